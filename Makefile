@@ -1,0 +1,60 @@
+# make demo    convert a sample clip and put source and result side by side
+# make test    run every test          make lint    ruff and mypy
+# make clean   remove what these made
+#
+# Needs only Python 3.11 or newer and make; everything is installed into .venv.
+
+PYTHON ?= python3
+DEMO_CLIP ?= sample_videos/bigbuckbunny.mp4
+
+VENV := .venv
+BIN := $(VENV)/bin
+PIP := $(BIN)/python -m pip --quiet --disable-pip-version-check
+DEMO_VIDEO := demo/$(basename $(notdir $(DEMO_CLIP))).mp4
+DEMO_SHEET := $(basename $(DEMO_VIDEO))_sheet.png
+SOURCES := $(shell find warp_kernels stages pipeline -name '*.py' -o -name '*.toml')
+
+.PHONY: demo test lint clean
+.DELETE_ON_ERROR:
+
+demo: $(DEMO_SHEET)
+	@echo "video:         $(DEMO_VIDEO)"
+	@echo "contact sheet: $(DEMO_SHEET)"
+
+test: $(VENV)/.installed-dev
+	@$(BIN)/python -m pytest
+
+lint: $(VENV)/.installed-dev
+	@$(BIN)/ruff check .
+	@$(BIN)/ruff format --check .
+	@$(BIN)/mypy
+
+clean:
+	@rm -rf $(VENV) demo out build *.egg-info .pytest_cache .ruff_cache .mypy_cache .hypothesis
+	@find . -name __pycache__ -type d -prune -exec rm -rf {} +
+
+$(DEMO_VIDEO): $(DEMO_CLIP) $(SOURCES) $(VENV)/.installed
+	@mkdir -p $(@D)
+	@$(BIN)/trimotion animate $(DEMO_CLIP) -o $@ --overwrite
+
+$(DEMO_SHEET): $(DEMO_VIDEO) benchmarks/contact_sheet.py
+	@$(BIN)/python benchmarks/contact_sheet.py $(DEMO_CLIP) $(DEMO_VIDEO) -o $@
+
+# A change of pyproject.toml makes the stamps stale: the installation is then repeated.
+$(VENV)/.installed: pyproject.toml $(VENV)/.created
+	@echo "installing trimotion into $(VENV)"
+	@$(PIP) install --editable .
+	@touch $@
+
+$(VENV)/.installed-dev: pyproject.toml $(VENV)/.installed
+	@echo "installing the tools for tests into $(VENV)"
+	@$(PIP) install --editable '.[dev]'
+	@touch $@
+
+$(VENV)/.created:
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null || { \
+		echo "trimotion needs Python 3.11 or newer, and $(PYTHON) is" \
+			"$$({ $(PYTHON) --version 2>&1 || echo missing; } | tail -n 1);" \
+			"try: make $(MAKECMDGOALS) PYTHON=python3.12" >&2; exit 1; }
+	@$(PYTHON) -m venv --clear $(VENV)
+	@touch $@

@@ -1,0 +1,27 @@
+"""Pure edits Mesh -> Mesh, each over a whole set of triangles or edges at once.
+
+Untouched triangles keep their rows and ids. What an edit creates gets the next fresh ids, so
+`edited.triangle_ids >= mesh.next_triangle_id` marks the new triangles. Edits of one set must
+not touch each other: `independent_flips` and `independent_collapses` choose such sets.
+An edit refuses (ValueError) what would leave an invalid mesh.
+"""
+
+from stages.edits.base_edge import turn_base_edge
+from stages.edits.collapse_edges import collapse_edges, collapsible
+from stages.edits.flip_edges import flip_edges, flippable
+from stages.edits.independent import independent_collapses, independent_flips
+from stages.edits.legalise import legalise
+from stages.edits.split import split_edges, split_triangles
+
+__all__ = [
+    "collapse_edges",
+    "collapsible",
+    "flip_edges",
+    "flippable",
+    "independent_collapses",
+    "independent_flips",
+    "legalise",
+    "split_edges",
+    "split_triangles",
+    "turn_base_edge",
+]

@@ -1,0 +1,83 @@
+"""Dense inverse search: OpenCV's flow of the best accuracy for its cost."""
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+
+from stages.flows.field import FlowField
+from warp_kernels.errors import OptionError
+
+SMALLEST = 12
+"""The shortest side that the search accepts [px]; smaller pictures count as still."""
+
+PRESETS = {
+    "fast": (cv2.DISOPTICAL_FLOW_PRESET_FAST, 2),
+    "medium": (cv2.DISOPTICAL_FLOW_PRESET_MEDIUM, 1),
+    "fine": (cv2.DISOPTICAL_FLOW_PRESET_MEDIUM, 0),
+}
+"""OpenCV's preset and the finest level of its pyramid; level n halves the pictures n times."""
+
+
+@dataclass(frozen=True)
+class Dis:
+    """Dense inverse search on reduced pictures.
+
+    The result depends on the two pictures alone, to the bit: no flow of an earlier frame starts
+    the search, and the number of threads does not matter.
+
+    Source: Kroeger et al., Fast Optical Flow using Dense Inverse Search (2016).
+
+    Raises:
+        OptionError: If the preset is unknown or `lines` below 12.
+    """
+
+    lines: int = 360
+    """Length of the short side of the pictures compared [px]; larger ones are reduced."""
+    preset: str = "medium"
+    """One of `PRESETS`.
+
+    Mean end-point error on two clips of 360 and 480 lines with known flow, and cost on one core:
+    fast 0.91 and 0.69 px in 6 ms, medium 0.46 and 0.56 px in 20 ms, fine 0.20 and 0.43 px in
+    80 ms. Half the lines at the next finer preset cost and err about the same.
+    """
+
+    def __post_init__(self) -> None:
+        if self.preset not in PRESETS:
+            raise OptionError(f"no flow preset {self.preset!r}; choose from {', '.join(PRESETS)}")
+        if self.lines < SMALLEST:
+            raise OptionError(f"flow at {self.lines} lines; use {SMALLEST} or more")
+
+    def estimate(self, previous: np.ndarray, current: np.ndarray) -> FlowField:
+        """Find where the points of one picture are in the next.
+
+        Args:
+            previous: The earlier picture, shape [H, W, 3] uint8.
+            current: The later picture, of the same size.
+        """
+        height, width = current.shape[:2]
+        scale = min(1.0, self.lines / min(height, width))
+        size = (round(scale * width), round(scale * height))
+        if min(size) < SMALLEST:
+            return FlowField.still(width, height)
+        before, after = (
+            cv2.resize(cv2.cvtColor(p, cv2.COLOR_RGB2GRAY), size, interpolation=cv2.INTER_AREA)
+            for p in (previous, current)
+        )
+        preset, finest_level = PRESETS[self.preset]
+        search = cv2.DISOpticalFlow.create(preset)
+        search.setFinestScale(min(finest_level, _coarsest_level(size)))
+        # OpenCV's annotations leave out that the initial flow is optional.
+        vectors = search.calc(before, after, None)  # type: ignore[call-overload]
+        vectors *= np.array([width / size[0], height / size[1]], dtype=np.float32)
+        return FlowField(width, height, vectors)
+
+
+def _coarsest_level(size: tuple[int, int]) -> int:
+    """The coarsest pyramid level that OpenCV takes for pictures of a size [px].
+
+    It replaces a finest level beyond this one by a guess from the width alone, which reads out
+    of bounds when the picture is wide and low (OpenCV 5.0: 48 x 14 crashes).
+    """
+    patch = 8
+    return max(0, int(min(np.log2(min(size) / patch), np.log2(max(size) / (4 * patch)) + 0.5)))

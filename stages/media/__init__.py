@@ -1,0 +1,24 @@
+"""Reading and writing media files; the only package that knows FFmpeg."""
+
+from stages.media.decode import Decoder, open_decoder
+from stages.media.encode import Encoder, open_encoder
+from stages.media.frame_range import FrameRange, parse_time
+from stages.media.info import MediaInfo
+from stages.media.naming import NumberedPattern
+from stages.media.output_plan import EncodeOptions, OutputPlan, check_output
+from stages.media.probe import probe
+
+__all__ = [
+    "Decoder",
+    "EncodeOptions",
+    "Encoder",
+    "FrameRange",
+    "MediaInfo",
+    "NumberedPattern",
+    "OutputPlan",
+    "check_output",
+    "open_decoder",
+    "open_encoder",
+    "parse_time",
+    "probe",
+]

@@ -1,0 +1,122 @@
+"""Which containers and codecs can be written, and how each encoder is set up."""
+
+from dataclasses import dataclass, field
+
+import av
+
+from warp_kernels.errors import OptionError
+
+
+@dataclass(frozen=True)
+class Container:
+    """A file format that can be written."""
+
+    format: str
+    """FFmpeg's name of its muxer."""
+    codec: str
+    """Codec that is used unless another is asked for, a key of `ENCODERS`."""
+    audio: str | None
+    """Encoder for audio that the format cannot hold as it is; None if it holds no audio."""
+    options: dict[str, str] = field(default_factory=dict)
+    """Options of the muxer."""
+
+
+@dataclass(frozen=True)
+class Encoder:
+    """A video encoder and its settings."""
+
+    name: str
+    """FFmpeg's name."""
+    pixel_formats: tuple[str, ...]
+    """Formats that may be chosen; the first is the default."""
+    quality: int | None
+    """Default of its constant-quality option, smaller is better; None if it has none."""
+    best_quality: int
+    """Least value of that option."""
+    worst_quality: int
+    """Largest value of that option."""
+    options: dict[str, str]
+    """Other options: a balance of speed and size."""
+    alpha_format: str | None = None
+    """Format for pictures with transparency; None if the codec has none."""
+    odd_sizes: bool = False
+    """Whether it takes odd sizes although colour is stored at half the size."""
+    tag: str | None = None
+    """Four letters in mp4 and mov, where the muxer's own choice does not play everywhere."""
+
+
+CONTAINERS = {
+    ".mp4": Container("mp4", "h264", "aac", {"movflags": "+faststart"}),
+    ".m4v": Container("mp4", "h264", "aac", {"movflags": "+faststart"}),
+    ".mov": Container("mov", "h264", "aac", {"movflags": "+faststart"}),
+    ".mkv": Container("matroska", "h264", "aac"),
+    ".webm": Container("webm", "vp9", "libopus"),
+    ".gif": Container("gif", "gif", None),
+}
+"""By ending, in lower case."""
+
+_YUV = ("yuv420p", "yuv422p", "yuv444p")
+_DEEP = ("yuv420p10le", "yuv422p10le", "yuv444p10le")
+
+ENCODERS = {
+    "h264": Encoder("libx264", _YUV + _DEEP, 18, 0, 51, {"preset": "veryfast"}),
+    "h265": Encoder(
+        "libx265",
+        _YUV + _DEEP,
+        20,
+        0,
+        51,
+        {"preset": "fast", "x265-params": "log-level=error"},
+        tag="hvc1",
+    ),
+    "av1": Encoder("libsvtav1", ("yuv420p", "yuv420p10le"), 28, 0, 63, {"preset": "8"}),
+    "vp9": Encoder(
+        "libvpx-vp9",
+        _YUV,
+        24,
+        0,
+        63,
+        {"deadline": "good", "cpu-used": "5", "row-mt": "1", "tile-columns": "1"},
+        "yuva420p",
+        odd_sizes=True,
+    ),
+    "prores": Encoder("prores_ks", ("yuv422p10le", "yuv444p10le"), None, 0, 0, {}, "yuva444p10le"),
+    "ffv1": Encoder(
+        "ffv1", ("yuv444p", "yuv420p", "yuv422p", "bgr0"), None, 0, 0, {}, "bgra", odd_sizes=True
+    ),
+    "gif": Encoder("gif", ("pal8",), None, 0, 0, {}),
+}
+"""By the name that users give."""
+
+_ALIASES = {
+    "avc": "h264",
+    "x264": "h264",
+    "libx264": "h264",
+    "hevc": "h265",
+    "x265": "h265",
+    "libx265": "h265",
+    "libsvtav1": "av1",
+    "libvpx-vp9": "vp9",
+    "prores_ks": "prores",
+}
+
+
+def find_encoder(codec: str) -> Encoder:
+    """Look an encoder up.
+
+    Args:
+        codec: Name of a codec or of one of its encoders.
+
+    Raises:
+        OptionError: If it is not known, or this FFmpeg lacks it.
+    """
+    key = _ALIASES.get(codec.lower(), codec.lower())
+    if key not in ENCODERS:
+        known = ", ".join(sorted(set(ENCODERS) - {"gif"}))
+        raise OptionError(f"codec {codec!r}: not known; choose one of {known}")
+    encoder = ENCODERS[key]
+    if encoder.name not in av.codecs_available:
+        raise OptionError(
+            f"codec {codec!r}: this build of FFmpeg has no {encoder.name}; choose another codec"
+        )
+    return encoder

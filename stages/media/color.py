@@ -1,0 +1,222 @@
+"""Stored pixels to RGB and back, with the matrix and the range always stated.
+
+Left to itself swscale takes BT.601 for untagged video and rounds with a bias; see FLAGS.
+"""
+
+from dataclasses import dataclass
+
+import av
+import numpy as np
+from av.video.frame import VideoFrame
+from av.video.reformatter import ColorRange, Colorspace, Interpolation, VideoReformatter
+
+FLAGS = int(Interpolation.BICUBIC | Interpolation.ACCURATE_RND | Interpolation.FULL_CHR_H_INT)
+"""The default flags bias colours by about one code value; these do not."""
+
+_BT709 = 1
+_FULL, _LIMITED = int(ColorRange.JPEG), int(ColorRange.MPEG)
+_MATRICES = {
+    1: ("bt709", Colorspace.ITU709),
+    4: ("fcc", Colorspace.FCC),
+    5: ("bt601", Colorspace.ITU601),
+    6: ("bt601", Colorspace.ITU601),
+    7: ("smpte240m", Colorspace.SMPTE240M),
+    9: ("bt2020", Colorspace.BT2020),
+    10: ("bt2020", Colorspace.BT2020),
+}
+_UNTAGGED = (0, 2, 3)
+_TRANSFERS = {16: "pq", 18: "hlg"}
+
+
+@dataclass(frozen=True)
+class ColorReading:
+    """How the stored pixels of a source are understood."""
+
+    matrix: str
+    """Name of the matrix, `rgb` if the pixels are stored as RGB."""
+    colorspace: int
+    """The same as swscale's number."""
+    full_range: bool
+    """Whether 0..255 are used rather than 16..235."""
+    hdr: str | None
+    """`pq`, `hlg` or None."""
+    notes: tuple[str, ...]
+    """What had to be guessed, one sentence each."""
+
+
+def read_color(frame: VideoFrame) -> ColorReading:
+    """Decide how a frame's pixels are to be understood.
+
+    Untagged video is BT.709 when it is at least 1280 wide or more than 576 high, else BT.601,
+    as players do.
+
+    Args:
+        frame: A decoded frame.
+    """
+    if frame.format.is_rgb or "pal8" in frame.format.name:
+        return ColorReading("rgb", Colorspace.ITU709, True, _TRANSFERS.get(frame.color_trc), ())
+    notes: list[str] = []
+    large = frame.width >= 1280 or frame.height > 576
+    matrix, colorspace = _MATRICES[1 if large else 6]
+    gray = frame.format.name.startswith(("gray", "ya", "mono"))
+    if frame.colorspace in _MATRICES:
+        matrix, colorspace = _MATRICES[frame.colorspace]
+    elif frame.colorspace not in _UNTAGGED:
+        notes.append(f"colour matrix {frame.colorspace} is not known: taken as {matrix}")
+    elif not gray:
+        notes.append(f"untagged colour: taken as {matrix}")
+    full = frame.color_range == _FULL or frame.format.name.startswith("yuvj")
+    if gray and frame.color_range != _LIMITED:
+        full = True
+    hdr = _TRANSFERS.get(frame.color_trc)
+    return ColorReading(matrix, int(colorspace), full, hdr, tuple(notes))
+
+
+class RgbReader:
+    """Converts decoded frames to upright RGB of one size; keeps its converter between frames."""
+
+    def __init__(self, width: int, height: int) -> None:
+        """Prepare for a source.
+
+        Args:
+            width: Width of every result [px]; frames of another size are scaled to it.
+            height: Height of every result [px].
+        """
+        self.saw_transparency = False
+        """Whether a frame had transparent pixels, which are shown over white."""
+        self._size = (width, height)
+        self._reformatter = VideoReformatter()
+
+    def read8(self, frame: VideoFrame, color: ColorReading) -> np.ndarray:
+        """Convert to 8 bits.
+
+        Args:
+            frame: A decoded frame.
+            color: How to understand it.
+
+        Returns:
+            Code values, [H, W, 3] uint8.
+        """
+        if has_alpha(frame):
+            return self._over_white(self._convert(frame, color, "rgba"))
+        pixels = self._convert(frame, color, "rgb24")
+        if not color.full_range and frame.format.name.startswith(("gray", "ya")):
+            pixels = _EXPAND_GRAY[pixels]
+        return pixels
+
+    def read16(self, frame: VideoFrame, color: ColorReading) -> np.ndarray:
+        """Convert to 16 bits, for tone mapping.
+
+        Args:
+            frame: A decoded frame.
+            color: How to understand it.
+
+        Returns:
+            Code values, [H, W, 3] uint16.
+        """
+        return self._convert(frame, color, "rgb48le")
+
+    def _convert(self, frame: VideoFrame, color: ColorReading, layout: str) -> np.ndarray:
+        converted = self._reformatter.reformat(
+            frame,
+            width=self._size[0],
+            height=self._size[1],
+            format=layout,
+            src_colorspace=color.colorspace,
+            src_color_range=_FULL if color.full_range else _LIMITED,
+            dst_color_range=_FULL,
+            interpolation=FLAGS,
+        )
+        return np.ascontiguousarray(converted.to_ndarray())
+
+    def _over_white(self, rgba: np.ndarray) -> np.ndarray:
+        alpha = rgba[..., 3]
+        if alpha.min() == 255:
+            return np.ascontiguousarray(rgba[..., :3])
+        self.saw_transparency = True
+        return over_white(rgba)
+
+
+class YuvWriter:
+    """Converts RGB pictures to frames for an encoder, tagged with what they are.
+
+    RGB formats stay RGB; JPEG's are full-range BT.601; all others are limited-range BT.709.
+    """
+
+    def __init__(self, pixel_format: str) -> None:
+        """Prepare for an encoder.
+
+        Args:
+            pixel_format: FFmpeg's name of the format that the encoder takes.
+        """
+        self.pixel_format = pixel_format
+        self._reformatter = VideoReformatter()
+        self._rgb = av.VideoFormat(pixel_format, 16, 16).is_rgb or pixel_format == "pal8"
+        self._jpeg = pixel_format.startswith("yuvj")
+        has_room = any(c.is_alpha for c in av.VideoFormat(pixel_format, 16, 16).components)
+        self.drops_alpha = not has_room
+        """Whether the format has no place for transparency."""
+
+    def write(self, pixels: np.ndarray) -> VideoFrame:
+        """Convert a picture.
+
+        Args:
+            pixels: Code values, [H, W, 3] or [H, W, 4] uint8.
+        """
+        layout = "rgba" if pixels.shape[2] == 4 else "rgb24"
+        source = VideoFrame.from_ndarray(np.ascontiguousarray(pixels), format=layout)
+        if self.pixel_format == layout:
+            return source
+        frame = self._reformatter.reformat(
+            source,
+            format=self.pixel_format,
+            dst_colorspace=None if self._rgb else self._matrix,
+            src_color_range=_FULL,
+            dst_color_range=_FULL if self._rgb or self._jpeg else _LIMITED,
+            interpolation=FLAGS,
+        )
+        if not self._rgb and not self._jpeg:
+            tag_bt709(frame)
+        return frame
+
+    @property
+    def _matrix(self) -> int:
+        return int(Colorspace.ITU601 if self._jpeg else Colorspace.ITU709)
+
+
+def tag_bt709(target: "VideoFrame | av.VideoCodecContext") -> None:
+    """Write the four tags of limited-range BT.709.
+
+    Args:
+        target: A frame or an encoder that is not open yet.
+    """
+    target.colorspace = _BT709
+    target.color_range = _LIMITED
+    target.color_primaries = _BT709
+    target.color_trc = _BT709
+
+
+def over_white(rgba: np.ndarray) -> np.ndarray:
+    """Lay a picture over white paper.
+
+    Args:
+        rgba: Code values with straight alpha, [H, W, 4] uint8.
+
+    Returns:
+        Code values, [H, W, 3] uint8.
+    """
+    alpha = rgba[..., 3:].astype(np.uint32)
+    mixed = rgba[..., :3] * alpha + 255 * (255 - alpha)
+    return ((mixed + 127) // 255).astype(np.uint8)
+
+
+def has_alpha(frame: VideoFrame) -> bool:
+    """Whether a frame's format can hold transparency.
+
+    Args:
+        frame: A decoded frame.
+    """
+    return "pal8" in frame.format.name or any(c.is_alpha for c in frame.format.components)
+
+
+_EXPAND_GRAY = np.clip(np.rint((np.arange(256) - 16.0) * 255 / 219), 0, 255).astype(np.uint8)

@@ -1,0 +1,220 @@
+"""Frames of a video, a still or numbered stills: upright, full-range RGB, times increasing."""
+
+from collections.abc import Iterator
+from fractions import Fraction
+from pathlib import Path
+from types import TracebackType
+
+import numpy as np
+from av.video.frame import VideoFrame
+
+from stages.frame import Frame
+from stages.media.color import RgbReader, read_color
+from stages.media.container import DAMAGE, reason_of
+from stages.media.deinterlace import deinterlace
+from stages.media.frame_index import seek_to_frame
+from stages.media.frame_range import FrameRange
+from stages.media.hdr import tone_map
+from stages.media.info import DEFAULT_MAX_PIXELS, MediaInfo
+from stages.media.naming import NumberedPattern, input_pattern
+from stages.media.orientation import upright
+from stages.media.probe import describe, describe_sequence
+from stages.media.sequence import existing_numbers, refuse_gaps, still_frames
+from stages.media.source import VideoSource
+from stages.media.timing import TimeRepair, usual_step
+from warp_kernels.errors import MediaError, OptionError
+
+WHOLE = FrameRange()
+"""Every frame."""
+
+
+def open_decoder(
+    path: str | Path,
+    frame_range: FrameRange = WHOLE,
+    *,
+    max_pixels: int = DEFAULT_MAX_PIXELS,
+    threads: int = 0,
+) -> "Decoder":
+    """Open a source for reading its frames.
+
+    Args:
+        path: A video, a still, or a pattern of numbered stills such as `shot_####.png`.
+        frame_range: The frames wanted. Stills of a sequence go by the number in their name.
+        max_pixels: Largest picture that is opened [px].
+        threads: Decoder threads, 0 for one per core.
+
+    Raises:
+        MediaError: If it cannot be read.
+        OptionError: If a pattern has more than one number field.
+    """
+    pattern = input_pattern(path)
+    if pattern is not None:
+        return _SequenceDecoder(pattern, frame_range, max_pixels)
+    return _FileDecoder(Path(path), frame_range, max_pixels, threads)
+
+
+class Decoder:
+    """Iterator over the frames of a source; a context manager; holds one frame at a time."""
+
+    info: MediaInfo
+    """What the source is."""
+
+    def __init__(self, info: MediaInfo, frame_range: FrameRange, source_name: str) -> None:
+        """Prepare the parts that all sources share; use `open_decoder`.
+
+        Args:
+            info: What the source is.
+            frame_range: The frames wanted.
+            source_name: The source, for messages.
+        """
+        self.info = info
+        self.warnings: list[str] = []
+        """Damage that was met, one sentence each; complete once the last frame was read."""
+        self.notes: list[str] = list(info.notes)
+        """Choices that were made, one sentence each."""
+        self._range = frame_range
+        self._name = source_name
+        self._reader = RgbReader(info.coded_width, info.coded_height)
+        self._delivered = 0
+        self._iterator: Iterator[Frame] | None = None
+
+    def __iter__(self) -> Iterator[Frame]:
+        """The frames from here on."""
+        return self
+
+    def __next__(self) -> Frame:
+        if self._iterator is None:
+            self._iterator = self._frames()
+        return next(self._iterator)
+
+    def __enter__(self) -> "Decoder":
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Release the source; no frame can be read afterwards."""
+        self._iterator = iter(())
+
+    def _frames(self) -> Iterator[Frame]:
+        raise NotImplementedError
+
+    def _to_frame(self, index: int, pts: int, raw: VideoFrame) -> Frame:
+        if (raw.width, raw.height) != (self.info.coded_width, self.info.coded_height):
+            self._note_once("picture size changes within the source: scaled to the first size")
+        self._delivered += 1
+        return Frame(index, pts, self.info.time_base, self._pixels(raw))
+
+    def _pixels(self, raw: VideoFrame) -> np.ndarray:
+        color = read_color(raw)
+        try:
+            if color.hdr is not None:
+                pixels = tone_map(self._reader.read16(raw, color), color.hdr)
+            else:
+                pixels = self._reader.read8(raw, color)
+        except DAMAGE as error:
+            raise MediaError(
+                self._name,
+                f"pixels of format {raw.format.name} cannot be converted ({reason_of(error)})",
+                "convert the file to H.264 first",
+            ) from error
+        if self._reader.saw_transparency:
+            self._note_once("transparent parts are shown over white")
+        return upright(pixels, self.info.rotation)
+
+    def _note_once(self, note: str) -> None:
+        if note not in self.notes:
+            self.notes.append(note)
+
+    def _refuse_nothing(self, available: str) -> None:
+        if self._delivered == 0:
+            raise OptionError(
+                f"frames {self._range} of {self._name}: there are none; the source has {available}"
+            )
+
+
+class _FileDecoder(Decoder):
+    """Frames of one video or still file."""
+
+    def __init__(self, path: Path, wanted: FrameRange, max_pixels: int, threads: int) -> None:
+        self._source = VideoSource(path, max_pixels, threads)
+        try:
+            info = describe(self._source)
+        except BaseException:
+            self._source.close()
+            raise
+        super().__init__(info, wanted, str(path))
+        self._end = Fraction(0)
+
+    def close(self) -> None:
+        """Release the file; no frame can be read afterwards."""
+        super().close()
+        self._source.close()
+
+    def _frames(self) -> Iterator[Frame]:
+        base = self.info.time_base
+        repair = TimeRepair(usual_step(self.info.average_rate, base))
+        skipped = seek_to_frame(self._source, self._range.first)
+        index, origin = skipped, self.info.start_time
+        for raw in deinterlace(self._source.frames()):
+            pts = repair(raw.pts, raw.duration)
+            if index == 0:
+                origin = pts * base
+            time = pts * base - origin
+            if self._range.is_past(index, time):
+                break
+            if self._range.holds(index, time):
+                yield self._to_frame(index, pts, raw)
+            index += 1
+            self._end = pts * base
+        self._report(repair.repaired, index)
+        self._refuse_nothing(f"frames 0 to {index - 1}")
+
+    def _report(self, repaired: int, count: int) -> None:
+        if repaired:
+            self._note_once(f"{repaired} frame times were missing or ran backwards: mended")
+        source = self._source
+        if source.failures:
+            self.warnings.append(
+                f"damaged: {source.failures} packets could not be decoded ({source.reason}); "
+                f"{count} frames could"
+            )
+        if self._range.is_whole and self._breaks_off(count):
+            self.warnings.append(
+                f"the file breaks off or skips after {count} frames, at {float(self._end):.2f} s"
+            )
+
+    def _breaks_off(self, count: int) -> bool:
+        declared, info = self._source.stream.frames, self.info
+        if declared and "mp4" in info.container:
+            return count < declared
+        if info.kind == "image" or info.duration is None or info.average_rate is None:
+            return False
+        missing = info.start_time + info.duration - self._end
+        return missing > max(5 / info.average_rate, info.duration / 20)
+
+
+class _SequenceDecoder(Decoder):
+    """Frames of numbered stills; their index is the number in the name."""
+
+    def __init__(self, pattern: NumberedPattern, wanted: FrameRange, max_pixels: int) -> None:
+        self._pattern = pattern
+        self._numbers = existing_numbers(pattern)
+        self._max_pixels = max_pixels
+        refuse_gaps(pattern, self._numbers, wanted)
+        info = describe_sequence(pattern, self._numbers, max_pixels)
+        super().__init__(info, wanted, pattern.text)
+
+    def _frames(self) -> Iterator[Frame]:
+        first, base = self._numbers[0], self.info.time_base
+        wanted = [n for n in self._numbers if self._range.holds(n, (n - first) * base)]
+        stills = still_frames(self._pattern, wanted, self._max_pixels, self.warnings)
+        for number, raw in stills:
+            yield self._to_frame(number, number - first, raw)
+        self._refuse_nothing(f"stills {first} to {self._numbers[-1]}")

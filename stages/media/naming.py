@@ -1,0 +1,93 @@
+"""Names of numbered stills: `shot_####.png`, `shot_%04d.png`, `shot_$F4.png`."""
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+from warp_kernels.errors import OptionError
+
+STILL_ENDINGS = frozenset({".png", ".jpg", ".jpeg", ".tif", ".tiff", ".webp"})
+"""Endings of a still that can be written; anything FFmpeg knows can be read."""
+
+_FIELD = re.compile(r"(?P<hashes>#+)|%0?(?P<printf>\d*)d|\$F(?P<houdini>\d*)")
+
+
+@dataclass(frozen=True)
+class NumberedPattern:
+    """A file name with one field for the frame number.
+
+    Raises:
+        OptionError: From `parse`, if the name has two fields or the folder has one.
+    """
+
+    text: str
+    """The pattern as the user wrote it."""
+    folder: Path
+    """Folder of the stills."""
+    prefix: str
+    """Name before the number."""
+    suffix: str
+    """Name after the number, ending included."""
+    digits: int
+    """Least number of digits; larger numbers simply take more."""
+
+    @classmethod
+    def parse(cls, path: str | Path) -> "NumberedPattern | None":
+        """Read a pattern, or return None when the name has no number field.
+
+        Args:
+            path: File name such as `out/shot_####.png`.
+
+        Raises:
+            OptionError: If the name holds more than one field.
+        """
+        whole = Path(path)
+        fields = list(_FIELD.finditer(whole.name))
+        if not fields:
+            return None
+        if len(fields) > 1:
+            raise OptionError(
+                f"{path}: {len(fields)} number fields in one name; keep one, such as name_####.png"
+            )
+        field = fields[0]
+        digits = len(field["hashes"] or "") or int(field["printf"] or field["houdini"] or 1)
+        name = whole.name
+        return cls(
+            str(path), whole.parent, name[: field.start()], name[field.end() :], min(digits, 20)
+        )
+
+    @property
+    def ending(self) -> str:
+        """Ending with its dot, in lower case."""
+        return Path(self.prefix + "0" + self.suffix).suffix.lower()
+
+    def path_for(self, number: int) -> Path:
+        """Name of the still with this frame number.
+
+        Args:
+            number: Frame number, from 0.
+        """
+        return self.folder / f"{self.prefix}{number:0{self.digits}d}{self.suffix}"
+
+    def numbers(self) -> list[int]:
+        """Frame numbers that exist in the folder, in ascending order."""
+        if not self.folder.is_dir():
+            return []
+        shape = re.compile(
+            re.escape(self.prefix) + rf"(\d{{{self.digits},}})" + re.escape(self.suffix)
+        )
+        found = (shape.fullmatch(entry.name) for entry in self.folder.iterdir())
+        numbers = sorted({int(match[1]) for match in found if match})
+        return [number for number in numbers if self.path_for(number).is_file()]
+
+
+def input_pattern(path: str | Path) -> NumberedPattern | None:
+    """Pattern that an input name means; a file of exactly that name wins over its reading.
+
+    Args:
+        path: Input as the user wrote it.
+
+    Raises:
+        OptionError: If the name holds more than one number field.
+    """
+    return None if Path(path).is_file() else NumberedPattern.parse(path)

@@ -1,0 +1,155 @@
+"""What a source is, learnt from its header and its first frame."""
+
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+
+import av
+from av.audio.stream import AudioStream
+from av.video.frame import VideoFrame
+
+from stages.media.color import read_color
+from stages.media.container import DAMAGE
+from stages.media.info import DEFAULT_MAX_PIXELS, MediaInfo
+from stages.media.naming import NumberedPattern, input_pattern
+from stages.media.orientation import quarter_turns, sane_aspect
+from stages.media.sequence import existing_numbers
+from stages.media.source import VideoSource
+
+SEQUENCE_RATE = Fraction(25)
+"""Frames per second of numbered stills, which carry no times."""
+
+_BARE_STREAMS = frozenset(
+    {"av1", "cavsvideo", "dirac", "h261", "h263", "h264", "hevc", "m4v", "mjpeg", "mpegvideo"}
+    | {"obu", "vc1", "vvc"}
+)
+"""Formats without a container: FFmpeg guesses their duration from a bit rate, and badly."""
+
+
+def probe(path: str | Path, *, max_pixels: int = DEFAULT_MAX_PIXELS) -> MediaInfo:
+    """Look at a source without decoding more than its first frame.
+
+    Args:
+        path: A video, a still, or a pattern of numbered stills.
+        max_pixels: Largest picture that is opened [px].
+
+    Raises:
+        MediaError: If it cannot be read.
+        OptionError: If a pattern has more than one number field.
+    """
+    pattern = input_pattern(path)
+    if pattern is not None:
+        return describe_sequence(pattern, existing_numbers(pattern), max_pixels)
+    with VideoSource(Path(path), max_pixels) as source:
+        return describe(source)
+
+
+def describe(source: VideoSource) -> MediaInfo:
+    """Properties of an opened file.
+
+    Args:
+        source: The file; its first frame is decoded but not consumed.
+
+    Raises:
+        MediaError: If no frame can be decoded.
+    """
+    frame = source.first_frame()
+    color = read_color(frame)
+    rotation = quarter_turns(frame.rotation)
+    notes = [*source.notes, *color.notes, *_notes_on(frame, color.hdr)]
+    aspect = sane_aspect(source.stream.sample_aspect_ratio, rotation)
+    if aspect is None:
+        notes.append(f"pixel aspect {source.stream.sample_aspect_ratio} ignored: taken as 1")
+    sideways = rotation in (90, 270)
+    picture = source.is_picture
+    audio_codec, audio_channels = _audio(source)
+    codec = source.stream.codec_context
+    return MediaInfo(
+        path=source.path,
+        kind="image" if picture else "video",
+        container=source.container.format.name,
+        codec=codec.name,
+        pixel_format=frame.format.name,
+        width=frame.height if sideways else frame.width,
+        height=frame.width if sideways else frame.height,
+        coded_width=frame.width,
+        coded_height=frame.height,
+        rotation=rotation,
+        sample_aspect=aspect or Fraction(1),
+        time_base=source.time_base,
+        average_rate=None if picture else source.average_rate,
+        frame_count=1 if picture else _frame_count(source),
+        start_time=(frame.pts or 0) * source.time_base,
+        duration=None if picture else _duration(source),
+        color_matrix=color.matrix,
+        color_range="full" if color.full_range else "limited",
+        hdr=color.hdr,
+        audio_codec=audio_codec,
+        audio_channels=audio_channels,
+        notes=tuple(notes),
+    )
+
+
+def describe_sequence(pattern: NumberedPattern, numbers: list[int], max_pixels: int) -> MediaInfo:
+    """Properties of numbered stills, by their first one.
+
+    Args:
+        pattern: Their name.
+        numbers: The frame numbers that exist.
+        max_pixels: Largest picture that is opened [px].
+
+    Raises:
+        MediaError: If the first still cannot be read.
+    """
+    with VideoSource(pattern.path_for(numbers[0]), max_pixels) as source:
+        first = describe(source)
+    rate = SEQUENCE_RATE
+    return replace(
+        first,
+        path=Path(pattern.text),
+        kind="sequence",
+        time_base=1 / rate,
+        average_rate=rate,
+        frame_count=len(numbers),
+        start_time=Fraction(0),
+        duration=(numbers[-1] - numbers[0] + 1) / rate,
+        notes=(*first.notes, f"numbered stills carry no times: {rate} frames a second taken"),
+    )
+
+
+def _notes_on(frame: VideoFrame, hdr: str | None) -> list[str]:
+    notes = []
+    if hdr is not None:
+        depth = max(component.bits for component in frame.format.components)
+        doubt = "" if depth > 8 else f"; with only {depth} bits the label may be wrong"
+        notes.append(f"labelled {hdr.upper()} (HDR): tone-mapped to BT.709{doubt}")
+    if frame.interlaced_frame:
+        notes.append("interlaced: one deinterlaced picture for every frame")
+    return notes
+
+
+def _audio(source: VideoSource) -> tuple[str | None, int | None]:
+    stream = source.container.streams.best("audio")
+    if not isinstance(stream, AudioStream) or stream.codec_context is None:
+        return None, None
+    try:
+        return stream.codec_context.codec.canonical_name, stream.codec_context.channels
+    except DAMAGE:
+        return stream.codec_context.name, None
+
+
+def _duration(source: VideoSource) -> Fraction | None:
+    if source.container.format.name in _BARE_STREAMS:
+        return None
+    stream = source.stream
+    if stream.duration and stream.duration > 0:
+        return stream.duration * source.time_base
+    whole = source.container.duration
+    return Fraction(whole, av.time_base) if whole and whole > 0 else None
+
+
+def _frame_count(source: VideoSource) -> int | None:
+    if source.stream.frames > 0:
+        return int(source.stream.frames)
+    duration, rate = _duration(source), source.average_rate
+    return max(1, round(duration * rate)) if duration and rate else None

@@ -1,0 +1,74 @@
+"""Numbered stills as frames."""
+
+from collections.abc import Iterator
+
+from av.video.frame import VideoFrame
+
+from stages.media.frame_range import FrameRange
+from stages.media.naming import NumberedPattern
+from stages.media.source import VideoSource
+from warp_kernels.errors import MediaError
+
+
+def existing_numbers(pattern: NumberedPattern) -> list[int]:
+    """Frame numbers of the stills that exist, in ascending order.
+
+    Args:
+        pattern: Their name.
+
+    Raises:
+        MediaError: If there is none.
+    """
+    numbers = pattern.numbers()
+    if not numbers:
+        raise MediaError(
+            pattern.text,
+            f"no still such as {pattern.path_for(1).name}",
+            "check the name and the number of digits",
+        )
+    return numbers
+
+
+def refuse_gaps(pattern: NumberedPattern, numbers: list[int], wanted: FrameRange) -> None:
+    """Refuse a sequence with missing stills: they would pass as a jump in the motion.
+
+    Args:
+        pattern: The stills' name.
+        numbers: The frame numbers that exist, ascending.
+        wanted: The frames asked for; a gap outside them does not matter.
+
+    Raises:
+        MediaError: If a still that is asked for is missing.
+    """
+    first = max(wanted.first, numbers[0])
+    first += (wanted.first - first) % wanted.step
+    last = numbers[-1] if wanted.last is None else min(wanted.last, numbers[-1])
+    expected = range(first, last + 1, wanted.step)
+    present = [number for number in numbers if number in expected]
+    if len(present) < len(expected):
+        pairs = zip(expected, [*present, -1], strict=False)
+        missing = next(number for number, found in pairs if number != found)
+        raise MediaError(
+            pattern.path_for(missing),
+            f"is missing ({len(expected) - len(present)} of the stills {first} to {last} are)",
+            "add it, or ask for frames before or after it",
+        )
+
+
+def still_frames(
+    pattern: NumberedPattern, numbers: list[int], max_pixels: int, problems: list[str]
+) -> Iterator[tuple[int, VideoFrame]]:
+    """Decode stills one after the other.
+
+    Args:
+        pattern: The stills' name.
+        numbers: The frame numbers to decode.
+        max_pixels: Largest picture that is opened [px].
+        problems: Receives one sentence for every still that cannot be decoded and is left out.
+    """
+    for number in numbers:
+        try:
+            with VideoSource(pattern.path_for(number), max_pixels) as source:
+                yield number, source.first_frame()
+        except MediaError as error:
+            problems.append(f"left out: {error}")

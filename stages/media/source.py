@@ -1,0 +1,194 @@
+"""The decoded frames of one file's video stream, as FFmpeg gives them."""
+
+from collections.abc import Generator, Iterator
+from fractions import Fraction
+from pathlib import Path
+from types import TracebackType
+
+from av.video.frame import VideoFrame
+
+from stages.media.container import (
+    DAMAGE,
+    choose_video,
+    is_picture,
+    open_container,
+    reason_of,
+)
+from warp_kernels.errors import MediaError
+
+MAX_FAILURES = 10_000
+"""Undecodable packets after which a file is given up."""
+
+
+class VideoSource:
+    """An opened file that yields its video's raw frames and survives damage.
+
+    Use as a context manager. Frames come in the order in which they are shown; packets that
+    cannot be decoded are skipped and counted, and a file that breaks off simply ends.
+    """
+
+    def __init__(self, path: Path, max_pixels: int, threads: int = 0) -> None:
+        """Open a file.
+
+        Args:
+            path: A local file.
+            max_pixels: Largest picture that is decoded [px].
+            threads: Decoder threads, 0 for one per core.
+
+        Raises:
+            MediaError: If it cannot be opened, holds no video or declares too large a picture.
+        """
+        self.path = path
+        self.failures = 0
+        """Number of packets that could not be decoded so far."""
+        self.reason = ""
+        """Why the first of them could not."""
+        self._max_pixels = max_pixels
+        self._threads = threads
+        self._open()
+
+    def _open(self) -> None:
+        self.container = open_container(self.path, self._max_pixels)
+        try:
+            chosen = choose_video(self.container, self.path)
+            self.stream = chosen.stream
+            self.notes = chosen.notes
+            codec = self.stream.codec_context
+            check_size(self.path, codec.width, codec.height, self._max_pixels)
+            codec.options = {"max_pixels": str(self._max_pixels)}
+            self.stream.thread_type = "AUTO"
+            self.stream.thread_count = self._threads
+        except BaseException:
+            self.container.close()
+            raise
+        self._ahead: VideoFrame | None = None
+        self._decoded = self._decode_all()
+
+    def reopen(self) -> None:
+        """Start again at the first frame."""
+        self.close()
+        self._open()
+
+    @property
+    def is_picture(self) -> bool:
+        """Whether the file is a still picture."""
+        return is_picture(self.container)
+
+    @property
+    def time_base(self) -> Fraction:
+        """Seconds per unit of pts."""
+        base = self.stream.time_base
+        return Fraction(base) if base else Fraction(1, 90000)
+
+    @property
+    def average_rate(self) -> Fraction | None:
+        """Frames per second as declared or guessed by FFmpeg; None if unknown."""
+        for rate in (self.stream.average_rate, self.stream.guessed_rate):
+            if rate:
+                return Fraction(rate)
+        return None
+
+    def first_frame(self) -> VideoFrame:
+        """The first frame that can be decoded; it is still yielded by `frames`.
+
+        Raises:
+            MediaError: If there is none, or a picture is too large.
+        """
+        if self._ahead is None:
+            self._ahead = next(self._decoded, None)
+        if self._ahead is None:
+            raise self._undecodable()
+        return self._ahead
+
+    def _undecodable(self) -> MediaError:
+        codec = self.stream.codec_context.name
+        if self.is_picture:
+            # Under a limit FFmpeg does not even report the size of a picture beyond it.
+            with open_container(self.path, max_pixels=2**31 - 1) as container:
+                header = choose_video(container, self.path).stream.codec_context
+                check_size(self.path, header.width, header.height, self._max_pixels)
+        reason = f" ({self.reason})" if self.reason else ""
+        if self.stream.codec_context.width == 0:
+            reason = " (damaged, or larger than 268 million pixels)"
+        remedy = "check or convert the file"
+        if codec == "webp":
+            remedy = "animated WebP cannot be read: convert it to GIF, PNG stills or a video"
+        return MediaError(self.path, f"no frame of its {codec} can be decoded{reason}", remedy)
+
+    def frames(self) -> Iterator[VideoFrame]:
+        """The frames that were not yielded yet, to the end or to where the file breaks off."""
+        if self._ahead is not None:
+            ahead, self._ahead = self._ahead, None
+            yield ahead
+        yield from self._decoded
+
+    def seek(self, pts: int) -> None:
+        """Go on at the last key frame at or before a time.
+
+        Args:
+            pts: The time [time base units].
+
+        Raises:
+            av.FFmpegError: If the container cannot seek.
+        """
+        self.container.seek(pts, stream=self.stream, backward=True)
+        self._ahead = None
+        self._decoded = self._decode_all()
+
+    def close(self) -> None:
+        """Release the file."""
+        self._decoded.close()
+        self.container.close()
+
+    def __enter__(self) -> "VideoSource":
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def _decode_all(self) -> Generator[VideoFrame, None, None]:
+        packets = self.container.demux(self.stream)
+        while True:
+            try:
+                packet = next(packets, None)
+                if packet is None:
+                    return
+                frames = packet.decode()
+            except EOFError:
+                return
+            except DAMAGE as error:
+                self._count(error)
+                if self.failures > MAX_FAILURES:
+                    return
+                continue
+            yield from frames
+
+    def _count(self, error: Exception) -> None:
+        self.failures += 1
+        self.reason = self.reason or reason_of(error)
+
+
+def check_size(path: Path, width: int, height: int, max_pixels: int) -> None:
+    """Refuse pictures that are too large, before memory is taken for them.
+
+    Args:
+        path: The file, for the message.
+        width: Declared width [px]; 0 if unknown.
+        height: Declared height [px]; 0 if unknown.
+        max_pixels: The limit [px].
+
+    Raises:
+        MediaError: If the picture exceeds the limit.
+    """
+    if width * height > max_pixels:
+        raise MediaError(
+            path,
+            f"{width}x{height} is {width * height / 1e6:.0f} million pixels, "
+            f"more than {max_pixels / 1e6:.0f} million",
+            "scale it down with another program first",
+        )

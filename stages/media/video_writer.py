@@ -1,0 +1,227 @@
+"""A video or GIF file, written frame by frame."""
+
+import contextlib
+import os
+from collections.abc import Iterator
+from fractions import Fraction
+
+import av
+import numpy as np
+from av.container import OutputContainer
+from av.video.frame import VideoFrame
+from av.video.stream import VideoStream
+
+from stages.media.audio import AudioTrack, open_audio
+from stages.media.color import YuvWriter, over_white, tag_bt709
+from stages.media.commit import PendingFile, output_error
+from stages.media.container import DAMAGE
+from stages.media.frame_range import FrameRange
+from stages.media.info import MediaInfo
+from stages.media.output_plan import EncodeOptions, OutputPlan
+from stages.media.palette import PaletteFilter
+
+_FAILURES = (*DAMAGE, OSError)
+_COARSE = {"gif": Fraction(1, 100), "matroska": Fraction(1, 1000), "webm": Fraction(1, 1000)}
+"""Formats with a clock of their own; mp4 and mov take any."""
+_LONGEST = 2**31 - 1
+
+
+class VideoWriter:
+    """Encodes pictures and carries the sound over."""
+
+    def __init__(
+        self, plan: OutputPlan, source: MediaInfo, options: EncodeOptions, frame_range: FrameRange
+    ) -> None:
+        """Prepare; nothing is created before the first picture.
+
+        Args:
+            plan: The checked output.
+            source: What is converted.
+            options: How to write.
+            frame_range: The frames that are converted; a part of the source starts at time 0.
+        """
+        self.notes: list[str] = []
+        """Choices that were made, one sentence each."""
+        self._plan = plan
+        self._source = source
+        self._options = options
+        self._shifted = not frame_range.is_whole
+        self._pending = PendingFile(plan.path)
+        self._output: OutputContainer | None = None
+        self._audio: AudioTrack | None = None
+        self._held: VideoFrame | None = None
+        self._start = Fraction(0)
+        self._held_pts = 0
+        self._durations: dict[int | None, int] = {}
+        self._held_time = Fraction(0)
+        self._held_step: Fraction | None = None
+
+    def write(self, pixels: np.ndarray, time: Fraction, time_base: Fraction) -> None:
+        """Add a picture.
+
+        Args:
+            pixels: Code values, [H, W, 3] or [H, W, 4] uint8.
+            time: When it is shown [s of the source]; later than the one before.
+            time_base: The unit of the source's times [s].
+
+        Raises:
+            OutputError: If it cannot be written.
+        """
+        try:
+            if self._output is None:
+                self._open(pixels, time, time_base)
+            frame = self._colors.write(self._fit(pixels))
+            frame.time_base = self._clock
+            pts = round((time - self._start) / self._clock)
+            if self._held is not None:
+                pts = max(pts, self._held_pts + 1)
+                self._held_step = time - self._held_time
+                self._encode_held(pts - self._held_pts)
+            frame.pts = pts
+            self._held, self._held_pts, self._held_time = frame, pts, time
+        except _FAILURES as error:
+            raise output_error(self._plan.path, error) from error
+
+    def close(self) -> None:
+        """Finish the file and move it to its name.
+
+        Raises:
+            OutputError: If it cannot be written.
+        """
+        try:
+            if self._output is None or self._held is None:
+                return
+            last = self._last_step()
+            self._encode_held(max(1, round(last / self._clock)))
+            self._mux(self._palette.finish() if self._palette else iter(()))
+            self._mux(iter((None,)))
+            if self._audio is not None:
+                self._audio.finish(self._held_time + last if self._shifted else None)
+                if self._audio.problem:
+                    self.notes.append(self._audio.problem)
+            self._output.close()
+        except _FAILURES as error:
+            self.abort()
+            raise output_error(self._plan.path, error) from error
+        finally:
+            if self._audio is not None:
+                self._audio.close()
+        self._pending.commit()
+
+    def abort(self) -> None:
+        """Leave nothing behind."""
+        with contextlib.suppress(*_FAILURES):
+            if self._output is not None:
+                self._output.close()
+        if self._audio is not None:
+            self._audio.close()
+        self._pending.discard()
+
+    def _open(self, pixels: np.ndarray, time: Fraction, time_base: Fraction) -> None:
+        plan = self._plan
+        assert plan.container is not None
+        assert plan.encoder is not None
+        format_name = plan.container.format
+        pixel_format = self._pixel_format(pixels.shape[2])
+        self._clock = _COARSE.get(format_name, Fraction(1, time_base.denominator))
+        options = dict(plan.container.options)
+        if format_name in ("mp4", "mov"):
+            ticks = self._clock.denominator
+            options["video_track_timescale"] = str(ticks)
+            # A late first picture is an edit in the movie's own, else coarser, clock.
+            options["movie_timescale"] = str(ticks * -(-1000 // ticks))
+        self._output = av.open(
+            str(self._pending.path), "w", format=format_name, container_options=options
+        )
+        self._stream = self._add_video(pixel_format)
+        self._palette = PaletteFilter() if pixel_format == "pal8" else None
+        self._colors = YuvWriter(
+            ("rgba" if pixels.shape[2] == 4 else "rgb24") if self._palette else pixel_format
+        )
+        self._start = time if self._shifted else Fraction(0)
+        if plan.audio:
+            path = self._source.path
+            self._audio = open_audio(path, self._output, plan.container, self.notes)
+            if self._audio is not None:
+                self._audio.begin(time if self._shifted else None)
+
+    def _pixel_format(self, channels: int) -> str:
+        encoder = self._plan.encoder
+        assert encoder is not None
+        if channels == 4 and encoder.alpha_format and self._options.pixel_format is None:
+            return encoder.alpha_format
+        return self._plan.pixel_format
+
+    def _add_video(self, pixel_format: str) -> VideoStream:
+        plan, options = self._plan, self._options
+        assert self._output is not None
+        assert plan.encoder is not None
+        settings = dict(plan.encoder.options)
+        if options.encoder_preset is not None:
+            settings["preset"] = options.encoder_preset
+        quality = plan.encoder.quality if options.crf is None else options.crf
+        if quality is not None:
+            settings["crf"] = str(quality)
+        if plan.encoder.name == "libsvtav1":
+            os.environ.setdefault("SVT_LOG", "1")  # it prints a banner otherwise
+        rate = self._source.average_rate or Fraction(25)
+        stream = self._output.add_stream(plan.encoder.name, rate=rate, options=settings)
+        if not isinstance(stream, VideoStream):
+            raise ValueError(f"{plan.encoder.name} is no video encoder")
+        codec = stream.codec_context
+        codec.width, codec.height = plan.padded_width, plan.padded_height
+        codec.pix_fmt = pixel_format
+        codec.time_base = self._clock
+        stream.time_base = self._clock
+        codec.thread_count = options.threads
+        if plan.encoder.name != "gif":
+            codec.sample_aspect_ratio = stream.sample_aspect_ratio = self._aspect()
+        if plan.encoder.tag and plan.container and plan.container.format in ("mp4", "mov"):
+            codec.codec_tag = plan.encoder.tag
+        if pixel_format.startswith("yuv"):
+            tag_bt709(codec)
+        return stream
+
+    def _aspect(self) -> Fraction:
+        """Pixel aspect that keeps the shape of the source's picture."""
+        source, plan = self._source, self._plan
+        stretch = Fraction(source.width * plan.height, source.height * plan.width)
+        if abs(stretch - 1) < Fraction(1, 50):
+            return source.sample_aspect
+        return (source.sample_aspect * stretch).limit_denominator(255)
+
+    def _fit(self, pixels: np.ndarray) -> np.ndarray:
+        """Repeat border pixels where the format needs even sizes; drop alpha it cannot hold."""
+        if pixels.shape[2] == 4 and self._colors.drops_alpha:
+            pixels = over_white(pixels)
+        down = self._plan.padded_height - pixels.shape[0]
+        right = self._plan.padded_width - pixels.shape[1]
+        if down or right:
+            pixels = np.pad(pixels, ((0, down), (0, right), (0, 0)), mode="edge")
+        return pixels
+
+    def _last_step(self) -> Fraction:
+        """How long the last picture is shown [s]."""
+        source = self._source
+        step = self._held_step or 1 / (source.average_rate or Fraction(25))
+        if not self._shifted and source.duration is not None:
+            declared = source.start_time + source.duration - self._held_time
+            if 0 < declared < 10 * step:
+                return declared
+        return step
+
+    def _encode_held(self, duration: int) -> None:
+        assert self._held is not None
+        self._held.duration = min(duration, _LONGEST)
+        self._durations[self._held_pts] = self._held.duration
+        if self._audio is not None:
+            self._audio.advance(self._held_time)
+        self._mux(self._palette.push(self._held) if self._palette else iter((self._held,)))
+
+    def _mux(self, frames: Iterator[VideoFrame | None]) -> None:
+        assert self._output is not None
+        for frame in frames:
+            for packet in self._stream.encode(frame):
+                # Encoders leave it out, and the last frame's duration is the file's end.
+                packet.duration = self._durations.pop(packet.pts, 0)
+                self._output.mux(packet)

@@ -1,0 +1,42 @@
+"""The finished triangulation of one frame: a mesh and the colours that fit it."""
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+
+from stages.mesh import Mesh
+from warp_kernels.color_model import CHANNELS, ColorModel
+
+
+@dataclass(frozen=True, eq=False)
+class Snapshot:
+    """What one frame of a clip became; all that a renderer needs."""
+
+    frame_index: int
+    """Number of the frame in the source."""
+    pts: int
+    """Presentation time in units of `time_base`."""
+    time_base: Fraction
+    """Seconds per unit of `pts`."""
+    mesh: Mesh
+    """The triangles."""
+    model: ColorModel
+    """The colour model that was optimised."""
+    coefficients: np.ndarray
+    """Per triangle and channel the coefficients of x^a y^b, x and y positions in the picture,
+    in the order of `model.exponents` [code value / px^(a + b)], shape [T, 3, K] float64."""
+    energies: np.ndarray
+    """E(T) of Eq. 4 [code value^2 px], shape [T] float64."""
+    counts: np.ndarray
+    """Pixels covered, shape [T] int64."""
+
+    @property
+    def rmse(self) -> float:
+        """Root mean square error over pixels and channels [code values].
+
+        The colours are clipped to 0..255 only when they are drawn, so this is the error of the
+        fit; Eq. 12's R is sqrt(3 / 2) of it.
+        """
+        samples = CHANNELS * self.mesh.width * self.mesh.height
+        return float(np.sqrt(2.0 * self.energies.sum() / samples))

@@ -1,0 +1,297 @@
+"""The house rules that a machine can check, each a function over one parsed file.
+
+A rule takes a `Module` and yields the line and text of everything that departs from it. The rules
+read syntax only and import nothing, so they also judge a small planted source string.
+"""
+
+import ast
+import re
+import sys
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import PurePosixPath
+
+LEVELS = {"warp_kernels": 0, "stages": 1, "pipeline": 2}
+"""A package imports from its own level and from lower ones."""
+
+IMPORT_HOMES = {
+    "warp": ("warp_kernels/",),
+    "scipy": ("stages/", "pipeline/"),
+    "cv2": ("stages/flows", "stages/layouts"),
+    "av": ("stages/media", "stages/decode", "stages/encode"),
+    "argparse": ("pipeline/",),
+    "sqlite3": ("pipeline/",),
+    "tomllib": ("pipeline/",),
+    "tqdm": ("pipeline/",),
+}
+"""Beginnings of the paths that may import a package; a package without a line is free."""
+
+RUNTIME_PACKAGES = frozenset({"warp", "numpy", "scipy", "cv2", "av", "tqdm"})
+"""Import names of the run-time dependencies."""
+
+ALLOCATING_FILES = frozenset({"warp_kernels/workspace.py"})
+"""The only owners of device memory."""
+
+ALLOCATORS = frozenset(
+    f"{kind}{suffix}" for kind in ("zeros", "ones", "empty", "full") for suffix in ("", "_like")
+) | {"array", "array1d", "array2d", "array3d", "array4d", "clone", "from_numpy", "from_torch"}
+TYPE_KEYWORDS = frozenset({"dtype", "ndim"})
+"""`wp.array` with these alone is a type, not memory."""
+
+FORBIDDEN_STEMS = frozenset({"utils", "util", "helpers", "helper", "manager", "common", "misc"})
+MAX_FILE_LINES = 400
+MAX_LINE_LENGTH = 100
+MAX_FUNCTION_LINES = 45
+MAX_KERNEL_LINES = 60
+
+# The homes of users and of build machines, and scratch folders.
+FOREIGN_PATH = re.compile(r"(?<![\w.\-/~}>])/(?:root|home|Users|work|workspace|tmp)/[\w.\-]")
+
+Finding = tuple[int, str]
+FunctionNode = ast.FunctionDef | ast.AsyncFunctionDef
+
+
+@dataclass(frozen=True)
+class Module:
+    """One Python file of the repository."""
+
+    path: str
+    """Relative to the repository, with slashes."""
+    source: str
+
+    @cached_property
+    def tree(self) -> ast.Module:
+        """The parsed source."""
+        return ast.parse(self.source)
+
+    @property
+    def package(self) -> str:
+        """The top folder."""
+        return self.path.split("/")[0]
+
+    def functions(self) -> Iterator[FunctionNode]:
+        """Walk all functions, methods and nested functions."""
+        for node in ast.walk(self.tree):
+            if isinstance(node, FunctionNode):
+                yield node
+
+    def imports(self) -> Iterator[tuple[int, str]]:
+        """Walk the absolute dotted names of all imports, with their lines."""
+        folder = PurePosixPath(self.path).parent.parts
+        for node in ast.walk(self.tree):
+            if isinstance(node, ast.Import):
+                yield from ((node.lineno, alias.name) for alias in node.names)
+            elif isinstance(node, ast.ImportFrom):
+                base = folder[: len(folder) - node.level + 1] if node.level else ()
+                parts = (*base, node.module) if node.module else base
+                yield node.lineno, ".".join(parts)
+
+
+def imports_point_downwards(module: Module) -> Iterator[Finding]:
+    """Imports go from pipeline to stages to warp_kernels, never the other way."""
+    level = LEVELS[module.package]
+    for line, name in module.imports():
+        if LEVELS.get(name.split(".")[0], -1) > level:
+            yield line, f"{module.package} imports {name}"
+
+
+def imports_stay_at_home(module: Module) -> Iterator[Finding]:
+    """A package with a home is imported only there, and nothing beyond the dependencies is."""
+    known = RUNTIME_PACKAGES | LEVELS.keys() | sys.stdlib_module_names
+    for line, name in module.imports():
+        top = name.split(".")[0]
+        if top not in known:
+            yield line, f"{top} is not a run-time dependency"
+        homes = IMPORT_HOMES.get(top, ("",))
+        if not module.path.startswith(homes):
+            yield line, f"{top} is imported outside {', '.join(homes)}"
+
+
+def kernels_only_in_warp_kernels(module: Module) -> Iterator[Finding]:
+    """`@wp.kernel` and `wp.launch` stay in warp_kernels, under whatever name warp is imported."""
+    if module.package == "warp_kernels":
+        return
+    for function in module.functions():
+        if _is_kernel(function):
+            yield function.lineno, f"kernel {function.name}"
+    for node in ast.walk(module.tree):
+        if isinstance(node, ast.Call) and _warp_name(node.func) in {"launch", "launch_tiled"}:
+            yield node.lineno, "launch of a kernel"
+
+
+def kernel_files_keep_annotations(module: Module) -> Iterator[Finding]:
+    """Warp reads annotations as objects: no `from __future__ import annotations` near kernels."""
+    if not any(_is_kernel(f) or _has_decorator(f, "func") for f in module.functions()):
+        return
+    for node in module.tree.body:
+        if isinstance(node, ast.ImportFrom) and node.module == "__future__":
+            yield node.lineno, "annotations would become strings"
+
+
+def kernel_outputs_come_last(module: Module) -> Iterator[Finding]:
+    """A kernel has outputs, they end in `_out`, they come last, and it writes to nothing else."""
+    for kernel in filter(_is_kernel, module.functions()):
+        names = [argument.arg for argument in kernel.args.args]
+        are_outputs = [name.endswith("_out") for name in names]
+        if not any(are_outputs):
+            yield kernel.lineno, f"{kernel.name} has no parameter that ends in _out"
+        if are_outputs != sorted(are_outputs):
+            yield kernel.lineno, f"{kernel.name} has an input after an output"
+        for line, name in _written_arrays(kernel):
+            if name in names and not name.endswith("_out"):
+                yield line, f"{kernel.name} writes to {name}, which does not end in _out"
+
+
+def memory_is_allocated_in_one_place(module: Module) -> Iterator[Finding]:
+    """Only the workspace allocates device memory; array types and a kernel's registers do not."""
+    if module.path in ALLOCATING_FILES:
+        return
+    on_device = {
+        id(node)
+        for function in module.functions()
+        if _is_kernel(function) or _has_decorator(function, "func")
+        for node in ast.walk(function)
+    }
+    for node in ast.walk(module.tree):
+        if isinstance(node, ast.Call) and _warp_name(node.func) in ALLOCATORS:
+            is_type = not node.args and {k.arg for k in node.keywords} <= TYPE_KEYWORDS
+            if not is_type and id(node) not in on_device:
+                yield node.lineno, f"wp.{_warp_name(node.func)} outside the workspace"
+
+
+def modules_have_docstrings(module: Module) -> Iterator[Finding]:
+    """Every file that holds something starts with what it is for."""
+    if module.source.strip() and not ast.get_docstring(module.tree):
+        yield 1, "no module docstring"
+
+
+def public_names_have_docstrings(module: Module) -> Iterator[Finding]:
+    """Public functions, methods and classes say what they do."""
+    for node in ast.walk(module.tree):
+        named = isinstance(node, FunctionNode | ast.ClassDef)
+        if named and not node.name.startswith("_") and not ast.get_docstring(node):
+            yield node.lineno, f"{node.name} has no docstring"
+
+
+def functions_are_short(module: Module) -> Iterator[Finding]:
+    """A longer function is a missing name; docstrings do not count."""
+    for function in module.functions():
+        limit = MAX_KERNEL_LINES if _is_kernel(function) else MAX_FUNCTION_LINES
+        length = function.end_lineno - function.lineno + 1
+        if ast.get_docstring(function):
+            length -= function.body[0].end_lineno - function.body[0].lineno + 1
+        # A factory is as long as what it adds around the kernels inside it.
+        for inner in _nested_functions(function):
+            length -= inner.end_lineno - inner.lineno + 1
+        if length > limit:
+            yield function.lineno, f"{function.name} has {length} lines, {limit} are allowed"
+
+
+def files_are_short(module: Module) -> Iterator[Finding]:
+    """A longer file holds a second thing; a longer line does not fit beside another."""
+    lines = module.source.splitlines()
+    if len(lines) > MAX_FILE_LINES:
+        yield MAX_FILE_LINES + 1, f"{len(lines)} lines, {MAX_FILE_LINES} are allowed"
+    for number, line in enumerate(lines, start=1):
+        if len(line) > MAX_LINE_LENGTH:
+            yield number, f"{len(line)} characters, {MAX_LINE_LENGTH} are allowed"
+
+
+def files_are_named_after_one_thing(module: Module) -> Iterator[Finding]:
+    """No utils, helpers or manager, as a file or as a folder."""
+    for part in PurePosixPath(module.path).with_suffix("").parts:
+        if part.strip("_") in FORBIDDEN_STEMS:
+            yield 1, f"{part} names no thing"
+
+
+def no_bare_except(module: Module) -> Iterator[Finding]:
+    """A handler names what it handles."""
+    for node in ast.walk(module.tree):
+        if isinstance(node, ast.ExceptHandler) and node.type is None:
+            yield node.lineno, "bare except"
+
+
+RULES: tuple[Callable[[Module], Iterator[Finding]], ...] = (
+    imports_point_downwards,
+    imports_stay_at_home,
+    kernels_only_in_warp_kernels,
+    kernel_files_keep_annotations,
+    kernel_outputs_come_last,
+    memory_is_allocated_in_one_place,
+    modules_have_docstrings,
+    public_names_have_docstrings,
+    functions_are_short,
+    files_are_short,
+    files_are_named_after_one_thing,
+    no_bare_except,
+)
+
+
+def foreign_paths(text: str) -> Iterator[Finding]:
+    """Find absolute paths that exist on one machine only."""
+    for number, line in enumerate(text.splitlines(), start=1):
+        for match in FOREIGN_PATH.finditer(line):
+            yield number, f"path of one machine: {line[match.start() :][:40]}"
+
+
+def markdown_links(text: str) -> Iterator[str]:
+    """Find the targets of a Markdown text's relative links and pictures, without anchors."""
+    prose = re.sub(r"```.*?```", "", text, flags=re.DOTALL)
+    patterns = (
+        r"\]\(\s*<?([^)\s>]+)",
+        r"<(?:img|video|source|a)\b[^>]*?(?:src|href)=[\"']([^\"']+)",
+    )
+    for pattern in patterns:
+        for target in re.findall(pattern, prose):
+            if not re.match(r"[a-z][a-z0-9+.\-]*:|#|//", target):
+                yield target.split("#")[0]
+
+
+def _decorator_names(function: FunctionNode) -> Iterator[str]:
+    """Give the last parts of a function's decorators: `kernel` for `@wp.kernel(...)`."""
+    for decorator in function.decorator_list:
+        target = decorator.func if isinstance(decorator, ast.Call) else decorator
+        yield ast.unparse(target).split(".")[-1]
+
+
+def _has_decorator(function: FunctionNode, name: str) -> bool:
+    """Say whether a decorator has this name."""
+    return name in _decorator_names(function)
+
+
+def _is_kernel(function: FunctionNode) -> bool:
+    """Say whether a function is a Warp kernel."""
+    return _has_decorator(function, "kernel")
+
+
+def _warp_name(called: ast.expr) -> str:
+    """Give `launch` for `wp.launch` and `warp.launch`, and nothing for what is not Warp's."""
+    owner, _, name = ast.unparse(called).rpartition(".")
+    return name if owner in {"wp", "warp"} else ""
+
+
+def _written_arrays(kernel: FunctionNode) -> Iterator[Finding]:
+    """Give the names of arrays that a kernel stores to, by index or by an atomic operation."""
+    for node in ast.walk(kernel):
+        targets: list[ast.expr] = []
+        if isinstance(node, ast.Assign):
+            targets = node.targets
+        elif isinstance(node, ast.AugAssign):
+            targets = [node.target]
+        elif isinstance(node, ast.Call) and _warp_name(node.func).startswith("atomic_"):
+            yield node.lineno, ast.unparse(node.args[0])
+        for target in targets:
+            if isinstance(target, ast.Subscript):
+                yield node.lineno, ast.unparse(target.value)
+
+
+def _nested_functions(function: FunctionNode) -> Iterator[FunctionNode]:
+    """Give the outermost functions defined inside a function; their lines do not overlap."""
+    pending: list[ast.AST] = list(function.body)
+    while pending:
+        node = pending.pop()
+        if isinstance(node, FunctionNode):
+            yield node
+        else:
+            pending.extend(ast.iter_child_nodes(node))

@@ -1,0 +1,76 @@
+"""What every test can ask for: a device, golden pictures, repeatable chance."""
+
+import os
+import random
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+
+import cv2
+import hypothesis
+import numpy as np
+import pytest
+import warp as wp
+
+from tests.golden_images import compare_with_golden
+
+GOLDEN_FOLDER = Path(__file__).parent / "golden"
+SEED = 20180806
+
+# Before Warp initialises, or it prints its greeting into the report.
+wp.config.log_level = wp.LOG_WARNING
+
+# Compiling a kernel takes longer than hypothesis' deadline, and a failure must come back tomorrow.
+hypothesis.settings.register_profile("repeatable", derandomize=True, deadline=None)
+hypothesis.settings.load_profile("repeatable")
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Add `--update-golden`."""
+    parser.addoption(
+        "--update-golden",
+        action="store_true",
+        help="store what is rendered as the new golden pictures; look at them before a commit",
+    )
+
+
+@pytest.fixture(params=["cpu", "cuda:0"], ids=["cpu", "cuda"])
+def device(request: pytest.FixtureRequest) -> str:
+    """Name a Warp device; CUDA is skipped where there is none, unless FAIL_WITHOUT_CUDA=1."""
+    if request.param != "cpu" and wp.get_cuda_device_count() == 0:
+        absent = "no CUDA device"
+        if os.environ.get("FAIL_WITHOUT_CUDA") == "1":
+            pytest.fail(f"{absent}, and FAIL_WITHOUT_CUDA=1")
+        pytest.skip(absent)
+    return request.param
+
+
+@pytest.fixture
+def assert_matches_golden(
+    request: pytest.FixtureRequest, tmp_path: Path
+) -> Callable[[np.ndarray, str], None]:
+    """Give `assert_matches_golden(actual, name)`, which compares with `tests/golden/<name>.png`.
+
+    `actual` is [H, W, 3] uint8 RGB. A failure names the folder that holds actual, expected and
+    difference.
+    """
+    return partial(
+        compare_with_golden,
+        golden_folder=GOLDEN_FOLDER,
+        failure_folder=tmp_path / "golden_failures",
+        update=request.config.getoption("--update-golden"),
+    )
+
+
+@pytest.fixture(autouse=True)
+def _repeatable_chance() -> None:
+    """Start every test from the same state of the global generators, whatever ran before it."""
+    random.seed(SEED)
+    np.random.seed(SEED)
+    cv2.setRNGSeed(SEED)
+
+
+@pytest.fixture
+def rng() -> np.random.Generator:
+    """Give a generator that starts the same for every test."""
+    return np.random.default_rng(SEED)

@@ -1,0 +1,151 @@
+"""Every device array of one output, and the recorded launches that draw a mesh into it."""
+
+from typing import Any
+
+import numpy as np
+import warp as wp
+
+from warp_kernels.device import Device
+from warp_kernels.edge_coverage import BAND, record_edge_coverage
+from warp_kernels.gbuffer import record_gbuffer
+from warp_kernels.raster import MAX_SIDE
+from warp_kernels.scene import Scene, StyleParameters
+from warp_kernels.shade import record_shade
+from warp_kernels.styles import Style
+
+SAMPLES = 3
+"""Samples per output pixel, across and down each; fewer where the sample grid would exceed what
+coverage can count, see `raster.MAX_SIDE`."""
+
+
+class Canvas:
+    """Device memory for one output size and one stack of styles.
+
+    Args:
+        device: Where to run.
+        picture: Width and height of the picture that the meshes cover [px].
+        output: Width and height of the output [px], at most MAX_SIDE each.
+        styles: Bottom to top.
+    """
+
+    def __init__(
+        self,
+        device: Device,
+        picture: tuple[int, int],
+        output: tuple[int, int],
+        styles: tuple[Style, ...],
+    ) -> None:
+        self.device = device
+        self.picture = picture
+        self.output = output
+        self.styles = styles
+        self.samples = max(1, min(SAMPLES, MAX_SIDE // max(output)))
+        width, height = output
+        rows, columns = height * self.samples, width * self.samples
+        self._triangle_of = wp.empty((rows, columns), dtype=int, device=device.warp)
+        self._pixels = wp.empty((height, width), dtype=wp.vec3ub, device=device.warp)
+        self._edge_count = wp.zeros(1, dtype=int, device=device.warp)
+        self._line_width = max((style.line_width for style in styles), default=0.0)
+        shape = (height, width) if self._line_width else (1, 1)
+        self._coverage = wp.zeros(shape, dtype=float, device=device.warp)
+        packed = np.zeros((max(1, len(styles)), 8), dtype=np.float32)
+        for row, style in zip(packed, styles, strict=False):
+            row[: len(style.parameters())] = style.parameters()
+        self._parameters = wp.array(packed, dtype=StyleParameters, device=device.warp)
+        self._allocate(vertices=512, triangles=1024)
+
+    def draw(
+        self,
+        *,
+        vertices: np.ndarray,
+        triangles: np.ndarray,
+        edges: np.ndarray,
+        colors: np.ndarray,
+        gradients: np.ndarray,
+        centres: np.ndarray,
+    ) -> np.ndarray:
+        """Draw a mesh.
+
+        Args:
+            vertices: Positions [px of the picture], [V, 2].
+            triangles: Corners, [T, 3].
+            edges: Ends, [E, 2].
+            colors: Mean colours [code values], [T, 3].
+            gradients: Change of colour to the right and down [code values / px], [T, 2, 3].
+            centres: Where a triangle has its mean colour [px of the picture], [T, 2].
+
+        Returns:
+            Code values, [rows, columns, 3] uint8; a copy of its own.
+        """
+        if len(vertices) > self._capacity[0] or len(triangles) > self._capacity[1]:
+            self._allocate(
+                vertices=max(self._capacity[0], len(vertices) * 3 // 2),
+                triangles=max(self._capacity[1], len(triangles) * 3 // 2),
+            )
+        for array, values in (
+            (self._vertices, vertices),
+            (self._triangles, triangles),
+            (self._edges, edges),
+            (self._colors, colors),
+            (self._gradients, gradients),
+            (self._centres, centres),
+            (self._edge_count, np.array([len(edges)])),
+        ):
+            self.device.write(array, values)
+        self._gbuffer.resize(len(triangles))
+        phases = [self._gbuffer]
+        if self._line_width:
+            self._coverage.zero_()
+            self._edge_drawing.resize(-(-self.output[1] // BAND), per_element=len(edges))
+            phases.append(self._edge_drawing)
+        self._shading.resize(self.output[1])
+        self.device.run([*phases, self._shading])
+        return self.device.read(self._pixels, self.output[1])
+
+    def _allocate(self, *, vertices: int, triangles: int) -> None:
+        self._capacity = (vertices, triangles)
+        self._vertices = self._empty(vertices, wp.vec2d)
+        self._triangles = self._empty(triangles, wp.vec3i)
+        self._edges = self._empty(vertices + triangles + 1, wp.vec2i)
+        self._colors = self._empty(triangles, wp.vec3f)
+        self._gradients = self._empty((triangles, 2), wp.vec3f)
+        self._centres = self._empty(triangles, wp.vec2f)
+        self._record()
+
+    def _record(self) -> None:
+        """Record every launch anew: the arrays have moved."""
+        scale = (self.output[0] / self.picture[0], self.output[1] / self.picture[1])
+        scene = Scene()
+        scene.colors = self._colors
+        scene.gradients = self._gradients
+        scene.centres = self._centres
+        scene.edge_coverage = self._coverage
+        self._gbuffer = record_gbuffer(
+            self.device,
+            vertices=self._vertices,
+            triangles=self._triangles,
+            scale=(scale[0] * self.samples, scale[1] * self.samples),
+            triangle_out=self._triangle_of,
+        )
+        self._edge_drawing = record_edge_coverage(
+            self.device,
+            vertices=self._vertices,
+            edges=self._edges,
+            edge_count=self._edge_count,
+            scale=scale,
+            half_width=0.5 * self._line_width * scale[1],
+            coverage_out=self._coverage,
+        )
+        self._shading = record_shade(
+            self.device,
+            shaders=tuple(style.shader for style in self.styles),
+            samples=self.samples,
+            scene=scene,
+            parameters=self._parameters,
+            triangle_of=self._triangle_of,
+            picture_per_sample=(1 / (scale[0] * self.samples), 1 / (scale[1] * self.samples)),
+            canvas_out=self._pixels,
+        )
+
+    def _empty(self, shape: Any, dtype: Any) -> wp.array:
+        return wp.empty(shape, dtype=dtype, device=self.device.warp)

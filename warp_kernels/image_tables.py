@@ -1,0 +1,72 @@
+"""Row prefix sums of the image's moment densities: built once per frame, read along every edge.
+
+Entry (row, column, power) is the 4-vector of the sums over all pixels left of `column` in `row`
+of x^power I for red, green and blue; the fourth component holds the sum of I^2 for power 0 and
+nothing otherwise. The table is one flat array, a row of W + 1 columns of d + 1 entries after the
+other, so that one pixel's entries share a cache line.
+"""
+
+from functools import lru_cache
+from typing import Any
+
+import warp as wp
+
+from warp_kernels.color_model import ColorModel
+from warp_kernels.device import Device, Phase
+
+wp.set_module_options({"enable_backward": False, "fuse_fp": False})
+
+
+@lru_cache(maxsize=None)
+def _table_kernel(model: ColorModel) -> Any:
+    depth = model.table_depth
+
+    @wp.kernel(enable_backward=False, module="unique")
+    def sum_rows(
+        begin: int,
+        # In:
+        pixels: wp.array2d(dtype=wp.vec3ub),
+        # Out:
+        table_out: wp.array(dtype=wp.vec4i),
+    ):
+        row = begin + wp.tid()
+        width = pixels.shape[1]
+        entry = row * (width + 1) * wp.static(depth)
+        left = wp.vec4i(0, 0, 0, 0)
+        left_x = wp.vec4i(0, 0, 0, 0)
+        for column in range(width):
+            table_out[entry] = left
+            if wp.static(depth > 1):
+                table_out[entry + 1] = left_x
+            pixel = pixels[row, column]
+            red = int(pixel[0])
+            green = int(pixel[1])
+            blue = int(pixel[2])
+            left += wp.vec4i(red, green, blue, red * red + green * green + blue * blue)
+            if wp.static(depth > 1):
+                left_x += (column - width / 2) * wp.vec4i(red, green, blue, 0)
+            entry += wp.static(depth)
+        table_out[entry] = left
+        if wp.static(depth > 1):
+            table_out[entry + 1] = left_x
+
+    return sum_rows
+
+
+def record_image_tables(
+    device: Device, model: ColorModel, *, pixels: wp.array, table_out: wp.array
+) -> Phase:
+    """Prepare the launch that fills the prefix table of one image.
+
+    Args:
+        device: Where to run.
+        model: Fixes the powers of x.
+        pixels: Code values, [H, W] vec3ub.
+        table_out: Prefix sums, [H * (W + 1) * (d + 1)] vec4i.
+
+    Source: Lawonn & Guenther (2018), Sec. 4.2 (sums of colours), App. A.
+    Deviation: prefix sums along rows take the place of sums over fragments.
+    """
+    phase = device.record(_table_kernel(model), [pixels], [table_out])
+    phase.resize(pixels.shape[0])
+    return phase

@@ -1,0 +1,128 @@
+"""One generic shader: a stack of styles, bottom to top, blended for every output pixel.
+
+A pixel whose samples all lie in one triangle is shaded once, at its centre; a pixel on a border
+is shaded at every sample and averaged.
+"""
+
+from functools import lru_cache
+from typing import Any
+
+import warp as wp
+
+from warp_kernels.device import Device, Phase
+from warp_kernels.scene import Sample, Scene, StyleParameters
+
+wp.set_module_options({"enable_backward": False, "fuse_fp": False})
+
+
+@lru_cache(maxsize=None)
+def _stack(shaders: tuple[Any, ...]) -> Any:
+    """A wp.func that blends the layers of some style shaders, the last on top."""
+    if not shaders:
+
+        @wp.func
+        def paper(
+            scene: Scene, parameters: wp.array(dtype=StyleParameters), sample: Sample
+        ) -> wp.vec3f:
+            """Nothing drawn: black."""
+            return wp.vec3f()
+
+        return paper
+    below, top, layer = _stack(shaders[:-1]), shaders[-1], len(shaders) - 1
+
+    @wp.func
+    def blended(
+        scene: Scene, parameters: wp.array(dtype=StyleParameters), sample: Sample
+    ) -> wp.vec3f:
+        """The layers below, and the top one over them by its opacity."""
+        under = below(scene, parameters, sample)
+        over = top(scene, parameters[wp.static(layer)], sample)
+        color = wp.vec3f(over[0], over[1], over[2])
+        return under + over[3] * (color - under)
+
+    return blended
+
+
+@lru_cache(maxsize=None)
+def _shade_kernel(shaders: tuple[Any, ...], samples: int) -> Any:
+    color_at = _stack(shaders)
+
+    @wp.kernel(enable_backward=False, module="unique")
+    def shade(
+        begin: int,
+        # In:
+        scene: Scene,
+        parameters: wp.array(dtype=StyleParameters),
+        triangle_of: wp.array2d(dtype=int),
+        picture_per_sample: wp.vec2f,
+        # Out:
+        canvas_out: wp.array2d(dtype=wp.vec3ub),
+    ):
+        """Shade one row of the output."""
+        row = begin + wp.tid()
+        first_row = row * wp.static(samples)
+        here = Sample()
+        here.row = row
+        column = int(0)
+        while column < canvas_out.shape[1]:
+            first = column * wp.static(samples)
+            here.column = column
+            here.triangle = triangle_of[first_row, first]
+            differing = int(0)
+            for i in range(wp.static(samples)):
+                for j in range(wp.static(samples)):
+                    differing = differing | (triangle_of[first_row + i, first + j] ^ here.triangle)
+            color = wp.vec3f()
+            if differing == 0:
+                centre = wp.static(0.5 * samples)
+                here.position = wp.vec2f(
+                    (float(first) + centre) * picture_per_sample[0],
+                    (float(first_row) + centre) * picture_per_sample[1],
+                )
+                color = color_at(scene, parameters, here)
+            else:
+                for i in range(wp.static(samples)):
+                    for j in range(wp.static(samples)):
+                        here.triangle = triangle_of[first_row + i, first + j]
+                        here.position = wp.vec2f(
+                            (float(first + j) + 0.5) * picture_per_sample[0],
+                            (float(first_row + i) + 0.5) * picture_per_sample[1],
+                        )
+                        color += color_at(scene, parameters, here)
+                color = color * wp.static(1.0 / (samples * samples))
+            canvas_out[row, column] = wp.vec3ub(
+                wp.uint8(int(wp.clamp(color[0], 0.0, 255.0) + 0.5)),
+                wp.uint8(int(wp.clamp(color[1], 0.0, 255.0) + 0.5)),
+                wp.uint8(int(wp.clamp(color[2], 0.0, 255.0) + 0.5)),
+            )
+            column += 1
+
+    return shade
+
+
+def record_shade(
+    device: Device,
+    *,
+    shaders: tuple[Any, ...],
+    samples: int,
+    scene: Any,
+    parameters: wp.array,
+    triangle_of: wp.array,
+    picture_per_sample: tuple[float, float],
+    canvas_out: wp.array,
+) -> Phase:
+    """Prepare the launch that shades the output, row by row.
+
+    Args:
+        device: Where to run.
+        shaders: The styles' wp.funcs `(Scene, StyleParameters, Sample) -> vec4f` of colour
+            [code values] and opacity [0..1], bottom to top.
+        samples: Samples per output pixel, across and down each.
+        scene: What shaders look at, a `Scene`.
+        parameters: One `StyleParameters` per shader.
+        triangle_of: Triangle of every sample, see `gbuffer`.
+        picture_per_sample: Size of a sample in the source picture [px], across and down.
+        canvas_out: Code values, [rows, columns] vec3ub.
+    """
+    inputs = [scene, parameters, triangle_of, wp.vec2f(*picture_per_sample)]
+    return device.record(_shade_kernel(shaders, samples), inputs, [canvas_out])

@@ -1,0 +1,45 @@
+"""Numbering of the displaced versions of a triangle and of an edge.
+
+A triangle has 1 + 12 variants (Eq. 11): variant 0 is the triangle itself, variant 1 + 4 c + d has
+corner c moved by one finite-difference step in direction d (+x, -x, +y, -y). An edge has 1 + 8
+versions by the same rule, with its two ends for c: moving a corner changes two edges only, and
+both triangles beside an edge read the same nine sums.
+"""
+
+import warp as wp
+
+wp.set_module_options({"enable_backward": False, "fuse_fp": False})
+
+DIRECTIONS = 4
+TRIANGLE_VARIANTS = 1 + 3 * DIRECTIONS
+EDGE_VERSIONS = 1 + 2 * DIRECTIONS
+
+
+@wp.func
+def displacement(direction: int, delta: int) -> wp.vec2i:
+    """The step of a direction: +x, -x, +y, -y by delta [1/256 px]."""
+    sign = 1 - 2 * (direction & 1)
+    if direction < 2:
+        return wp.vec2i(sign * delta, 0)
+    return wp.vec2i(0, sign * delta)
+
+
+@wp.func
+def edge_version(variant: int, side: int, reversed_edge: int) -> int:
+    """Version of the edge on `side` of a triangle that the triangle's variant reads.
+
+    Side c runs from corner c to corner c + 1. `reversed_edge` is 1 where the stored edge runs
+    the other way than the side.
+    """
+    if variant == 0:
+        return 0
+    corner = (variant - 1) / 4
+    direction = (variant - 1) - 4 * corner
+    end = int(2)
+    if corner == side:
+        end = 0
+    if corner == (side + 1) % 3:
+        end = 1
+    if end == 2:
+        return 0
+    return 1 + 4 * (end ^ reversed_edge) + direction

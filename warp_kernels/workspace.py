@@ -1,0 +1,288 @@
+"""Every device array of one job, and the only owner of device memory.
+
+Arrays grow by half when a mesh outgrows them and are never shrunk, so a clip's frames find
+everything in place: nothing is allocated or converted inside an optimisation round.
+"""
+
+from typing import Any
+
+import numpy as np
+import warp as wp
+
+from warp_kernels.color_model import ColorModel
+from warp_kernels.descend import record_descent
+from warp_kernels.device import Device, Phase
+from warp_kernels.edge_moments import record_edge_moments
+from warp_kernels.fragments import record_fragment_moments
+from warp_kernels.image_tables import record_image_tables
+from warp_kernels.moments import check_size, column_powers, moment_types
+from warp_kernels.solve import record_energies, record_fit
+from warp_kernels.variants import EDGE_VERSIONS, TRIANGLE_VARIANTS
+
+FAR = 1e6
+"""First trust region of a vertex [px]: the common one rules until steps turn round."""
+
+
+class Workspace:
+    """Device memory for one picture and one mesh, and the recorded launches over it.
+
+    Args:
+        device: Where to run.
+        size: Width and height of the picture [px].
+        model: The colour model to optimise.
+        sums: "edges", or "fragments" for the paper's own way.
+
+    Raises:
+        OptionError: If the picture is so large that a sum could leave its integers.
+    """
+
+    def __init__(
+        self, device: Device, size: tuple[int, int], model: ColorModel, sums: str = "edges"
+    ) -> None:
+        check_size(*size)
+        self.device = device
+        self.size = size
+        self.model = model
+        self.sums = sums
+        width, height = size
+        types = moment_types(model)
+        self._pixels = self._empty((height, width), wp.vec3ub)
+        self._table = self._empty(height * (width + 1) * model.table_depth, wp.vec4i)
+        self._powers = wp.array(
+            column_powers(width, model), dtype=types.powers, device=device.warp
+        )
+        self._controls = self._empty(2, wp.float64)
+        self._tables = record_image_tables(
+            device, model, pixels=self._pixels, table_out=self._table
+        )
+        self._counts = (0, 0, 0)
+        self._front = 0
+        self._allocate(vertices=512, triangles=1024)
+
+    def load_image(self, pixels: np.ndarray) -> None:
+        """Take in a picture and build its prefix tables.
+
+        Args:
+            pixels: Code values, [H, W, 3] uint8.
+        """
+        self.device.write(self._pixels, pixels)
+        self.device.run([self._tables])
+
+    def load_mesh(
+        self,
+        *,
+        vertices: np.ndarray,
+        triangles: np.ndarray,
+        edges: np.ndarray,
+        sides: np.ndarray,
+        fan_offsets: np.ndarray,
+        fan_corners: np.ndarray,
+        freedom: np.ndarray,
+        anchors: np.ndarray,
+    ) -> None:
+        """Take in a mesh; see the launchers for the arrays.
+
+        Args:
+            vertices: Positions [px], [V, 2].
+            triangles: Corners, [T, 3].
+            edges: Ends of every edge, [E, 2].
+            sides: 2 * edge + (1 where the edge runs the other way), [T, 3].
+            fan_offsets: Beginning of each vertex's corners, [V + 1].
+            fan_corners: Corners 3 t + c by vertex, [3 T].
+            freedom: 1 where a coordinate may change, else 0, [V, 2].
+            anchors: Position [px] and weight [code value^2] of the temporal term, [V, 3].
+        """
+        self._counts = (len(vertices), len(triangles), len(edges))
+        self._grow()
+        self._front = 0
+        for array, values in (
+            (self._vertices[0], vertices),
+            (self._triangles, triangles),
+            (self._edges, edges),
+            (self._sides, sides),
+            (self._fan_offsets, fan_offsets),
+            (self._fan_corners, fan_corners),
+            (self._freedom, freedom),
+            (self._anchors, anchors),
+        ):
+            self.device.write(array, values)
+        memory = np.zeros((len(vertices), 4))
+        memory[:, :2] = FAR
+        self.device.write(self._memory, memory)
+        self._resize()
+
+    def iterate(self, times: int, *, trust: float, regularity: float) -> None:
+        """Run whole iterations: moments, energies, gradient, step.
+
+        Args:
+            times: Iterations.
+            trust: Longest step [px].
+            regularity: lambda of Eq. 7 [code value^2].
+        """
+        self.device.write(self._controls, np.array([trust, regularity]))
+        there, back = (
+            [self._moments[front], self._energy, self._descents[front]] for front in (0, 1)
+        )
+        if times and self._front == 1:
+            self.device.run(back)
+            self._front, times = 0, times - 1
+        self.device.run(there + back, times // 2)
+        if times % 2:
+            self.device.run(there)
+            self._front = 1
+
+    def vertices(self) -> np.ndarray:
+        """Positions as they stand now [px], [V, 2] float64."""
+        return self.device.read(self._vertices[self._front], self._counts[0])
+
+    def energies(self) -> np.ndarray:
+        """E of all thirteen variants of every triangle as it stands, [T, 13] float64."""
+        self.device.run([self._moments[self._front], self._energy])
+        return self.device.read(self._energies, self._counts[1])
+
+    def moments(self) -> tuple[np.ndarray, np.ndarray]:
+        """Colour and area sums as they stand: [E, 9, .] with edges, [T, 13, .] with fragments."""
+        self.device.run([self._moments[self._front]])
+        count = self._counts[2] if self.sums == "edges" else self._counts[1]
+        return self.device.read(self._color_sums, count), self.device.read(self._area_sums, count)
+
+    def fit(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Best colours of the mesh as it stands.
+
+        Returns:
+            Coefficients [T, 3, K] float64, energies [T] float64, pixel counts [T] int64.
+        """
+        self.device.run([self._fit_sums[self._front], self._fit])
+        count = self._counts[1]
+        return (
+            self.device.read(self._coefficients, count),
+            self.device.read(self._fit_energies, count),
+            self.device.read(self._fit_counts, count),
+        )
+
+    def _grow(self) -> None:
+        vertices, triangles, _ = self._counts
+        if vertices > self._capacity[0] or triangles > self._capacity[1]:
+            self._allocate(
+                vertices=max(self._capacity[0], vertices * 3 // 2),
+                triangles=max(self._capacity[1], triangles * 3 // 2),
+            )
+
+    def _allocate(self, *, vertices: int, triangles: int) -> None:
+        self._capacity = (vertices, triangles)
+        edges = vertices + triangles + 1  # Euler: E = V + T - 1 in a disc
+        types = moment_types(self.model)
+        rows = (edges, EDGE_VERSIONS)
+        if self.sums == "fragments":
+            rows = (triangles, TRIANGLE_VARIANTS)
+        self._vertices = (self._empty(vertices, wp.vec2d), self._empty(vertices, wp.vec2d))
+        self._triangles = self._empty(triangles, wp.vec3i)
+        self._edges = self._empty(edges, wp.vec2i)
+        self._sides = self._empty(triangles, wp.vec3i)
+        self._fan_offsets = self._empty(vertices + 1, wp.int32)
+        self._fan_corners = self._empty(3 * triangles, wp.int32)
+        self._freedom = self._empty(vertices, wp.vec2d)
+        self._anchors = self._empty(vertices, wp.vec3d)
+        self._memory = self._empty(vertices, wp.vec4d)
+        self._color_sums = self._empty(rows, types.color)
+        self._area_sums = self._empty(rows, types.area)
+        self._energies = self._empty((triangles, TRIANGLE_VARIANTS), wp.float64)
+        self._fit_color_sums = self._empty((edges, 1), types.color)
+        self._fit_area_sums = self._empty((edges, 1), types.area)
+        self._coefficients = self._empty((triangles, 3, self.model.term_count), wp.float64)
+        self._fit_energies = self._empty(triangles, wp.float64)
+        self._fit_counts = self._empty(triangles, wp.int64)
+        self._record()
+
+    def _record(self) -> None:
+        """Record every launch anew: the arrays have moved."""
+        common = {"table": self._table, "powers": self._powers, "size": self.size}
+        self._moments = [self._record_moments(front) for front in self._vertices]
+        self._energy = record_energies(
+            self.device,
+            self.model,
+            self.sums,
+            sides=self._sides,
+            color_sums=self._color_sums,
+            area_sums=self._area_sums,
+            energies_out=self._energies,
+        )
+        self._descents = [
+            record_descent(
+                self.device,
+                vertices=self._vertices[front],
+                triangles=self._triangles,
+                energies=self._energies,
+                fan_offsets=self._fan_offsets,
+                fan_corners=self._fan_corners,
+                freedom=self._freedom,
+                anchors=self._anchors,
+                controls=self._controls,
+                memory_out=self._memory,
+                vertices_out=self._vertices[1 - front],
+            )
+            for front in (0, 1)
+        ]
+        self._fit_sums = [
+            record_edge_moments(
+                self.device,
+                self.model,
+                vertices=front,
+                edges=self._edges,
+                color_out=self._fit_color_sums,
+                area_out=self._fit_area_sums,
+                versions=1,
+                **common,
+            )
+            for front in self._vertices
+        ]
+        self._fit = record_fit(
+            self.device,
+            self.model,
+            sides=self._sides,
+            color_sums=self._fit_color_sums,
+            area_sums=self._fit_area_sums,
+            size=self.size,
+            coefficients_out=self._coefficients,
+            energies_out=self._fit_energies,
+            counts_out=self._fit_counts,
+        )
+
+    def _record_moments(self, vertices: wp.array) -> Phase:
+        if self.sums == "fragments":
+            return record_fragment_moments(
+                self.device,
+                self.model,
+                vertices=vertices,
+                triangles=self._triangles,
+                pixels=self._pixels,
+                powers=self._powers,
+                color_out=self._color_sums,
+                area_out=self._area_sums,
+            )
+        return record_edge_moments(
+            self.device,
+            self.model,
+            vertices=vertices,
+            edges=self._edges,
+            table=self._table,
+            powers=self._powers,
+            size=self.size,
+            color_out=self._color_sums,
+            area_out=self._area_sums,
+        )
+
+    def _resize(self) -> None:
+        """Set the size of every launch to the mesh in place."""
+        vertices, triangles, edges = self._counts
+        for phase in self._moments:
+            phase.resize(edges if self.sums == "edges" else triangles)
+        for phase in self._fit_sums:
+            phase.resize(edges)
+        for phase in (self._energy, self._fit):
+            phase.resize(triangles)
+        for phase in self._descents:
+            phase.resize(vertices)
+
+    def _empty(self, shape: Any, dtype: Any) -> wp.array:
+        return wp.empty(shape, dtype=dtype, device=self.device.warp)
