@@ -1,7 +1,7 @@
 """The triangulation of one frame: immutable arrays and the tables that follow from them."""
 
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, reduce
 
 import numpy as np
 
@@ -210,9 +210,8 @@ def areas_of(corners: np.ndarray) -> np.ndarray:
     Returns:
         Areas [px^2], shape [N].
     """
-    base = corners[:, 1] - corners[:, 0]
-    side = corners[:, 2] - corners[:, 0]
-    return 0.5 * (base[:, 0] * side[:, 1] - base[:, 1] * side[:, 0])
+    x, y = _columns(corners)
+    return 0.5 * ((x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0]))
 
 
 def heights_of(corners: np.ndarray) -> np.ndarray:
@@ -224,10 +223,17 @@ def heights_of(corners: np.ndarray) -> np.ndarray:
     Returns:
         Heights [px], shape [N], signed like the area.
     """
-    sides = corners[:, [1, 2, 0]] - corners
-    longest = np.sqrt(np.einsum("ncx,ncx->nc", sides, sides).max(axis=1, initial=0.0))
+    x, y = _columns(corners)
+    squares = ((x[i] - x[j]) ** 2 + (y[i] - y[j]) ** 2 for i, j in ((0, 1), (1, 2), (2, 0)))
+    longest = np.sqrt(reduce(np.maximum, squares))
     # Where the longest edge is 0 the area is 0 as well, so any positive divisor gives 0.
     return 2.0 * areas_of(corners) / np.where(longest > 0, longest, 1.0)
+
+
+def _columns(corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Corners [N, 3, 2] as x and y, each [3, N]: long rows add faster than short ones."""
+    x, y = np.ascontiguousarray(corners.reshape(-1, 6).T).reshape(3, 2, -1).swapaxes(0, 1)
+    return x, y
 
 
 def twins_of(triangles: np.ndarray, vertex_count: int) -> np.ndarray:

@@ -5,12 +5,17 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from stages.mesh import Mesh
+from warp_kernels.errors import OptionError
 from warp_kernels.workspace import Workspace
 
 
 @dataclass(frozen=True)
 class OptimizeOptions:
-    """How vertices move."""
+    """How vertices move.
+
+    Raises:
+        OptionError: If a value is impossible.
+    """
 
     regularity: float = field(
         default=1e-3, metadata={"help": "lambda: pull towards the ring's centre"}
@@ -19,23 +24,23 @@ class OptimizeOptions:
         default=0.5, metadata={"help": "longest step of a vertex in one iteration [px]"}
     )
 
+    def __post_init__(self) -> None:
+        if not (np.isfinite(self.regularity) and self.regularity >= 0):
+            raise OptionError(f"--regularity {self.regularity:g}: must be 0 or more; try 0.001")
+        if not (np.isfinite(self.trust_region) and self.trust_region > 0):
+            raise OptionError(f"--trust-region {self.trust_region:g}: must be above 0; try 0.5")
 
-def load_mesh(
-    workspace: Workspace, mesh: Mesh, anchors: np.ndarray | None = None, pull: float = 0.0
-) -> None:
+
+def load_mesh(workspace: Workspace, mesh: Mesh, springs: np.ndarray | None = None) -> None:
     """Put a mesh into device memory.
 
     Args:
         workspace: Takes the mesh.
         mesh: The mesh.
-        anchors: Where the temporal term holds each vertex [px], [V, 2]; else nowhere.
-        pull: Weight of the temporal term [code value^2].
+        springs: Where the temporal term holds each vertex [px] and how strongly
+            [code value^2], [V, 3]; None for not at all.
     """
     freedom = np.stack([~mesh.on_left_right, ~mesh.on_top_bottom], axis=1).astype(np.float64)
-    springs = np.zeros((mesh.vertex_count, 3))
-    if anchors is not None:
-        springs[:, :2] = anchors
-        springs[:, 2] = pull
     workspace.load_mesh(
         vertices=mesh.vertices,
         triangles=mesh.triangles,
@@ -44,7 +49,7 @@ def load_mesh(
         fan_offsets=mesh.fan_offsets,
         fan_corners=mesh.fan_corners,
         freedom=freedom,
-        anchors=springs,
+        anchors=np.zeros((mesh.vertex_count, 3)) if springs is None else springs,
     )
 
 
@@ -55,6 +60,7 @@ def optimize(
     options: OptimizeOptions,
     *,
     trust_region: float | None = None,
+    dead_band: float = 0.0,
 ) -> Mesh:
     """Run iterations of gradient descent over the mesh that lies in the workspace.
 
@@ -64,6 +70,7 @@ def optimize(
         iterations: Number of steps of every vertex.
         options: How vertices move.
         trust_region: Longest step [px], if not that of `options`.
+        dead_band: Shorter steps are not taken [px].
 
     Returns:
         The same triangles over the new positions.
@@ -71,5 +78,7 @@ def optimize(
     Source: Lawonn & Guenther, Stylized Image Triangulation (2018), Sec. 3.2.
     """
     trust = options.trust_region if trust_region is None else trust_region
-    workspace.iterate(iterations, trust=trust, regularity=options.regularity)
+    workspace.iterate(
+        iterations, trust=trust, regularity=options.regularity, dead_band=dead_band
+    )
     return mesh.moved(workspace.vertices())

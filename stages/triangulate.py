@@ -32,6 +32,11 @@ LAST_TRUST = 0.1
 """Trust region of the last iteration beside the first one's: it shrinks so that vertices settle."""
 SLIVER_HEIGHT = 0.5
 """Triangles thinner than this collapse [px]: hardly a pixel's centre lies in them."""
+SPRING = 1500.0
+"""Strength of the temporal term [code value^2]: a vertex leaves the flow's path where the picture
+pulls harder than noise does."""
+DEAD_BAND = 0.02
+"""Steps of later frames below this are not taken [px]: noise must not move what stands still."""
 
 
 @dataclass(frozen=True)
@@ -87,14 +92,25 @@ class Triangulator:
         device: Where kernels run.
         size: Width and height of the frames [px].
         options: How a picture becomes triangles.
+        drawn: The colour model that will be drawn; the snapshots' colours fit it if it has more
+            terms than the optimised one.
 
     Raises:
         OptionError: If the frames are too large.
     """
 
-    def __init__(self, device: Device, size: tuple[int, int], options: TriangulateOptions) -> None:
+    def __init__(
+        self,
+        device: Device,
+        size: tuple[int, int],
+        options: TriangulateOptions,
+        drawn: ColorModel | None = None,
+    ) -> None:
         self.options = options
         self._workspace = Workspace(device, size, options.model, options.sums)
+        self._fitting = self._workspace
+        if drawn is not None and drawn.degree > options.model.degree:
+            self._fitting = Workspace(device, size, drawn)
 
     def first(self, frame: Frame, layout: Layout, rng: np.random.Generator) -> Snapshot:
         """Triangulate a frame from scratch.
@@ -122,14 +138,23 @@ class Triangulator:
         """
         options = self.options
         self._workspace.load_image(frame.pixels)
-        half = options.frame_iterations // 2
-        load_mesh(self._workspace, seed)
-        mesh = optimize(self._workspace, seed, half, options.optimize)
-        mesh = self._refined(mesh, options.refine.triangles)
-        load_mesh(self._workspace, mesh)
-        rest = options.frame_iterations - half
-        mesh = optimize(self._workspace, mesh, rest, options.optimize)
+        mesh = self._follow(seed, seed, options.frame_iterations // 2)
+        mesh = self._refined(mesh, options.refine.triangles, everywhere=False)
+        mesh = self._follow(mesh, seed, options.frame_iterations - options.frame_iterations // 2)
         return self._snapshot(frame, mesh)
+
+    def _follow(self, mesh: Mesh, seed: Mesh, iterations: int) -> Mesh:
+        """Optimise, with every vertex on a spring to where the flow took it."""
+        springs = np.zeros((mesh.vertex_count, 3))
+        springs[:, :2] = mesh.vertices
+        old = np.searchsorted(seed.vertex_ids, mesh.vertex_ids)
+        known = mesh.vertex_ids < seed.next_vertex_id
+        springs[known, :2] = seed.vertices[old[known]]
+        springs[known, 2] = SPRING
+        load_mesh(self._workspace, mesh, springs)
+        return optimize(
+            self._workspace, mesh, iterations, self.options.optimize, dead_band=DEAD_BAND
+        )
 
     def _refine_from(self, mesh: Mesh) -> Mesh:
         """Alternate optimisation and refinement until the wanted number is reached."""
@@ -143,13 +168,14 @@ class Triangulator:
             mesh = self._refined(mesh, min(grown, goal))
         return mesh
 
-    def _refined(self, mesh: Mesh, count: int) -> Mesh:
+    def _refined(self, mesh: Mesh, count: int, *, everywhere: bool = True) -> Mesh:
         """Drop slivers, split the worst triangles up to `count`, restore Delaunay there."""
+        before = mesh.next_triangle_id
         mesh = collapse_slivers(mesh, SLIVER_HEIGHT)
         load_mesh(self._workspace, mesh)
         _, energies, _ = self._workspace.fit()
         mesh = refine(mesh, energies, count=count, threshold=self.options.refine.error)
-        return legalise(mesh)
+        return legalise(mesh, None if everywhere else mesh.triangle_ids >= before)
 
     def _settle(self, mesh: Mesh) -> Mesh:
         """The last iterations: no change of topology, smaller and smaller steps.
@@ -167,14 +193,17 @@ class Triangulator:
         return mesh
 
     def _snapshot(self, frame: Frame, mesh: Mesh) -> Snapshot:
-        load_mesh(self._workspace, mesh)
-        coefficients, energies, counts = self._workspace.fit()
+        fitting = self._fitting
+        if fitting is not self._workspace:
+            fitting.load_image(frame.pixels)
+        load_mesh(fitting, mesh)
+        coefficients, energies, counts = fitting.fit()
         return Snapshot(
             frame_index=frame.index,
             pts=frame.pts,
             time_base=frame.time_base,
             mesh=mesh,
-            model=self.options.model,
+            model=fitting.model,
             coefficients=coefficients,
             energies=energies,
             counts=counts,

@@ -2,4 +2,4 @@
 
 import warp as wp
 
-wp.config.log_level = wp.LOG_WARNING  # before Warp starts: a command's output is its own
+wp.config.log_level = wp.LOG_ERROR  # before Warp starts, or it speaks of a missing CUDA driver

@@ -12,6 +12,8 @@ wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 HEIGHT_FRACTION = 0.4
 """Largest step as a part of the smallest height around. Below 1/2 no triangle can turn inside
 out: its width shrinks by at most twice the largest step of its corners."""
+LEAST_HEIGHT = 0.05
+"""Heights do not shrink below this [px]: far above the 1/256 px to which coverage rounds."""
 
 GROW = 1.2
 SHRINK = 0.5
@@ -61,6 +63,7 @@ def _descend_kernel() -> Any:
         vertex = begin + wp.tid()
         trust = controls[0]
         regularity = controls[1]
+        dead_band = controls[2]
         here = vertices[vertex]
         slope = wp.vec2d()
         curvature = wp.vec2d()
@@ -107,8 +110,12 @@ def _descend_kernel() -> Any:
             memory[axis] = reach
             memory[axis + 2] = s
             step[axis] = s
-        limit = wp.min(trust, wp.float64(wp.static(HEIGHT_FRACTION)) * height)
+        floor = wp.float64(wp.static(LEAST_HEIGHT))
+        spare = wp.max(height - floor, wp.float64(0.1) * height)
+        limit = wp.min(trust, wp.float64(wp.static(HEIGHT_FRACTION)) * spare)
         length = wp.length(step)
+        if length < dead_band:
+            step = wp.vec2d()
         if length > limit:
             step = step * (limit / length)
         memory_out[vertex] = memory
@@ -142,7 +149,7 @@ def record_descent(
         fan_corners: Corner numbers 3 t + c around each vertex, [3 T].
         freedom: 1 where a coordinate may change and 0 where the border holds it, [V] vec2d.
         anchors: Position [px] and weight [code value^2] of the temporal term, [V] vec3d.
-        controls: Trust region [px] and lambda [code value^2], [2].
+        controls: Trust region [px], lambda [code value^2], shortest step that is taken [px], [3].
         memory_out: Each vertex's own trust region per axis [px] and its last step [px], read and
             written, [V] vec4d.
         vertices_out: Positions after the step [px], [V] vec2d.

@@ -51,7 +51,7 @@ class Workspace:
         self._powers = wp.array(
             column_powers(width, model), dtype=types.powers, device=device.warp
         )
-        self._controls = self._empty(2, wp.float64)
+        self._controls = self._empty(3, wp.float64)
         self._tables = record_image_tables(
             device, model, pixels=self._pixels, table_out=self._table
         )
@@ -111,15 +111,18 @@ class Workspace:
         self.device.write(self._memory, memory)
         self._resize()
 
-    def iterate(self, times: int, *, trust: float, regularity: float) -> None:
+    def iterate(
+        self, times: int, *, trust: float, regularity: float, dead_band: float = 0.0
+    ) -> None:
         """Run whole iterations: moments, energies, gradient, step.
 
         Args:
             times: Iterations.
             trust: Longest step [px].
             regularity: lambda of Eq. 7 [code value^2].
+            dead_band: Shorter steps are not taken [px].
         """
-        self.device.write(self._controls, np.array([trust, regularity]))
+        self.device.write(self._controls, np.array([trust, regularity, dead_band]))
         there, back = (
             [self._moments[front], self._energy, self._descents[front]] for front in (0, 1)
         )

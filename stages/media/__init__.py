@@ -2,10 +2,11 @@
 
 from stages.media.decode import Decoder, open_decoder
 from stages.media.encode import Encoder, open_encoder
+from stages.media.encoder_setup import EncodeOptions
 from stages.media.frame_range import FrameRange, parse_time
 from stages.media.info import MediaInfo
 from stages.media.naming import NumberedPattern
-from stages.media.output_plan import EncodeOptions, OutputPlan, check_output
+from stages.media.output_plan import OutputPlan, check_output
 from stages.media.probe import probe
 
 __all__ = [

@@ -37,6 +37,8 @@ class Encoder:
     """Largest value of that option."""
     options: dict[str, str]
     """Other options: a balance of speed and size."""
+    presets: tuple[str, ...] = ()
+    """Values of its option `preset`, from fast to slow."""
     alpha_format: str | None = None
     """Format for pictures with transparency; None if the codec has none."""
     odd_sizes: bool = False
@@ -45,21 +47,28 @@ class Encoder:
     """Four letters in mp4 and mov, where the muxer's own choice does not play everywhere."""
 
 
+_AS_GIVEN = {"avoid_negative_ts": "disabled"}
+"""Else sound that starts before 0, as coded sound does, moves the pictures as well."""
+
 CONTAINERS = {
     ".mp4": Container("mp4", "h264", "aac", {"movflags": "+faststart"}),
     ".m4v": Container("mp4", "h264", "aac", {"movflags": "+faststart"}),
     ".mov": Container("mov", "h264", "aac", {"movflags": "+faststart"}),
-    ".mkv": Container("matroska", "h264", "aac"),
-    ".webm": Container("webm", "vp9", "libopus"),
+    ".mkv": Container("matroska", "h264", "aac", _AS_GIVEN),
+    ".webm": Container("webm", "vp9", "libopus", _AS_GIVEN),
     ".gif": Container("gif", "gif", None),
 }
 """By ending, in lower case."""
 
+_PRESETS = (
+    *("ultrafast", "superfast", "veryfast", "faster", "fast"),
+    *("medium", "slow", "slower", "veryslow", "placebo"),
+)
 _YUV = ("yuv420p", "yuv422p", "yuv444p")
 _DEEP = ("yuv420p10le", "yuv422p10le", "yuv444p10le")
 
 ENCODERS = {
-    "h264": Encoder("libx264", _YUV + _DEEP, 18, 0, 51, {"preset": "veryfast"}),
+    "h264": Encoder("libx264", _YUV + _DEEP, 18, 0, 51, {"preset": "veryfast"}, _PRESETS),
     "h265": Encoder(
         "libx265",
         _YUV + _DEEP,
@@ -67,9 +76,18 @@ ENCODERS = {
         0,
         51,
         {"preset": "fast", "x265-params": "log-level=error"},
+        _PRESETS,
         tag="hvc1",
     ),
-    "av1": Encoder("libsvtav1", ("yuv420p", "yuv420p10le"), 28, 0, 63, {"preset": "8"}),
+    "av1": Encoder(
+        "libsvtav1",
+        ("yuv420p", "yuv420p10le"),
+        28,
+        0,
+        63,
+        {"preset": "8"},
+        tuple(str(n) for n in range(13, -1, -1)),
+    ),
     "vp9": Encoder(
         "libvpx-vp9",
         _YUV,
@@ -77,12 +95,21 @@ ENCODERS = {
         0,
         63,
         {"deadline": "good", "cpu-used": "5", "row-mt": "1", "tile-columns": "1"},
-        "yuva420p",
+        alpha_format="yuva420p",
         odd_sizes=True,
     ),
-    "prores": Encoder("prores_ks", ("yuv422p10le", "yuv444p10le"), None, 0, 0, {}, "yuva444p10le"),
+    "prores": Encoder(
+        "prores_ks", ("yuv422p10le", "yuv444p10le"), None, 0, 0, {}, alpha_format="yuva444p10le"
+    ),
     "ffv1": Encoder(
-        "ffv1", ("yuv444p", "yuv420p", "yuv422p", "bgr0"), None, 0, 0, {}, "bgra", odd_sizes=True
+        "ffv1",
+        ("yuv444p", "yuv420p", "yuv422p", "bgr0"),
+        None,
+        0,
+        0,
+        {},
+        alpha_format="bgra",
+        odd_sizes=True,
     ),
     "gif": Encoder("gif", ("pal8",), None, 0, 0, {}),
 }

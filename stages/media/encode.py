@@ -6,9 +6,10 @@ from types import TracebackType
 
 import numpy as np
 
+from stages.media.encoder_setup import EncodeOptions
 from stages.media.frame_range import FrameRange
 from stages.media.info import MediaInfo
-from stages.media.output_plan import WHOLE, EncodeOptions, OutputPlan, check_output
+from stages.media.output_plan import WHOLE, OutputPlan, check_output
 from stages.media.still_writer import StillWriter
 from stages.media.video_writer import VideoWriter
 from warp_kernels.errors import OutputError

@@ -54,6 +54,8 @@ class MediaInfo:
     """FFmpeg's name of the codec of the audio stream that is carried over, or None."""
     audio_channels: int | None
     """Number of its channels, or None."""
+    audio_rate: int | None
+    """Its samples per second, or None."""
     notes: tuple[str, ...] = ()
     """Choices that were made in reading the file, one sentence each."""
 

@@ -2,7 +2,7 @@
 
 import io
 import os
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from pathlib import Path
 
@@ -10,35 +10,11 @@ import av
 
 from stages.media.codecs import CONTAINERS, Container, Encoder, find_encoder
 from stages.media.commit import output_error
+from stages.media.encoder_setup import EncodeOptions, try_encoder
 from stages.media.frame_range import FrameRange
 from stages.media.info import MediaInfo
 from stages.media.naming import STILL_ENDINGS, NumberedPattern
 from warp_kernels.errors import OptionError, OutputError
-
-
-@dataclass(frozen=True)
-class EncodeOptions:
-    """How an output is written."""
-
-    codec: str | None = field(
-        default=None,
-        metadata={"help": "video codec: h264, h265, av1, vp9, prores or ffv1 (by the ending)"},
-    )
-    crf: int | None = field(
-        default=None,
-        metadata={"help": "constant quality of the codec, smaller is better and larger"},
-    )
-    pixel_format: str | None = field(
-        default=None,
-        metadata={"help": "yuv420p plays everywhere; yuv444p keeps coloured edges sharp"},
-    )
-    encoder_preset: str | None = field(
-        default=None,
-        metadata={"help": "speed of the encoder, such as veryfast or slow for h264 and h265"},
-    )
-    audio: bool = field(default=True, metadata={"help": "carry the source's audio over"})
-    overwrite: bool = field(default=False, metadata={"help": "replace an existing output"})
-    threads: int = field(default=0, metadata={"help": "encoder threads, 0 for one per core"})
 
 
 @dataclass(frozen=True)
@@ -144,12 +120,21 @@ def _plan_video(
         notes.append(f"{ending} holds no sound: the audio is left out")
     if container.format == "gif" and source.sample_aspect != 1:
         notes.append(f"{ending} has square pixels only: the picture will look stretched")
-    if container.format in ("matroska", "webm") and 1000 % source.time_base.denominator:
-        notes.append(f"{ending} keeps times in whole milliseconds: they are rounded")
-    plan = OutputPlan(
-        target, None, container, encoder, pixel_format, size[0], size[1], audio, tuple(notes)
+    if container.format in ("matroska", "webm"):
+        if 1000 % source.time_base.denominator:
+            notes.append(f"{ending} keeps times in whole milliseconds: they are rounded")
+        if source.sample_aspect != 1 and encoder.name not in ("libx264", "libx265"):
+            notes.append(
+                f"{ending} with {encoder.name} loses the pixel aspect {source.sample_aspect}: "
+                "the picture will look stretched"
+            )
+    plan = _note_padding(
+        OutputPlan(
+            target, None, container, encoder, pixel_format, size[0], size[1], audio, tuple(notes)
+        )
     )
-    return _note_padding(plan)
+    try_encoder(encoder, pixel_format, (plan.padded_width, plan.padded_height), options)
+    return plan
 
 
 def _note_padding(plan: OutputPlan) -> OutputPlan:
@@ -212,9 +197,10 @@ def _check_quality(encoder: Encoder, options: EncodeOptions) -> None:
                 f"crf {options.crf}: {encoder.name} takes {encoder.best_quality} to "
                 f"{encoder.worst_quality}"
             )
-    if options.encoder_preset is not None and "preset" not in encoder.options:
+    if options.encoder_preset is not None and options.encoder_preset not in encoder.presets:
         raise OptionError(
-            f"encoder preset {options.encoder_preset!r}: {encoder.name} has none; leave it out"
+            f"encoder preset {options.encoder_preset!r}: {encoder.name} takes "
+            f"{', '.join(encoder.presets) or 'none; leave it out'}"
         )
 
 

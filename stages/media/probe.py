@@ -9,7 +9,6 @@ from av.audio.stream import AudioStream
 from av.video.frame import VideoFrame
 
 from stages.media.color import read_color
-from stages.media.container import DAMAGE
 from stages.media.info import DEFAULT_MAX_PIXELS, MediaInfo
 from stages.media.naming import NumberedPattern, input_pattern
 from stages.media.orientation import quarter_turns, sane_aspect
@@ -62,13 +61,13 @@ def describe(source: VideoSource) -> MediaInfo:
         notes.append(f"pixel aspect {source.stream.sample_aspect_ratio} ignored: taken as 1")
     sideways = rotation in (90, 270)
     picture = source.is_picture
-    audio_codec, audio_channels = _audio(source)
+    audio_codec, audio_channels, audio_rate = _audio(source)
     codec = source.stream.codec_context
     return MediaInfo(
         path=source.path,
         kind="image" if picture else "video",
         container=source.container.format.name,
-        codec=codec.name,
+        codec=codec.codec.canonical_name,
         pixel_format=frame.format.name,
         width=frame.height if sideways else frame.width,
         height=frame.width if sideways else frame.height,
@@ -86,6 +85,7 @@ def describe(source: VideoSource) -> MediaInfo:
         hdr=color.hdr,
         audio_codec=audio_codec,
         audio_channels=audio_channels,
+        audio_rate=audio_rate,
         notes=tuple(notes),
     )
 
@@ -128,14 +128,13 @@ def _notes_on(frame: VideoFrame, hdr: str | None) -> list[str]:
     return notes
 
 
-def _audio(source: VideoSource) -> tuple[str | None, int | None]:
+def _audio(source: VideoSource) -> tuple[str | None, int | None, int | None]:
+    """Codec, channels and samples per second of the sound."""
     stream = source.container.streams.best("audio")
     if not isinstance(stream, AudioStream) or stream.codec_context is None:
-        return None, None
-    try:
-        return stream.codec_context.codec.canonical_name, stream.codec_context.channels
-    except DAMAGE:
-        return stream.codec_context.name, None
+        return None, None, None
+    context = stream.codec_context
+    return context.codec.canonical_name, context.channels, context.sample_rate or None
 
 
 def _duration(source: VideoSource) -> Fraction | None:

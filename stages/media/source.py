@@ -44,18 +44,19 @@ class VideoSource:
         self.reason = ""
         """Why the first of them could not."""
         self._max_pixels = max_pixels
+        self._guard = max_pixels + max_pixels // 8 + 2**16  # decoders round sizes up
         self._threads = threads
         self._open()
 
     def _open(self) -> None:
-        self.container = open_container(self.path, self._max_pixels)
+        self.container = open_container(self.path, self._guard)
         try:
             chosen = choose_video(self.container, self.path)
             self.stream = chosen.stream
             self.notes = chosen.notes
             codec = self.stream.codec_context
             check_size(self.path, codec.width, codec.height, self._max_pixels)
-            codec.options = {"max_pixels": str(self._max_pixels)}
+            codec.options = {"max_pixels": str(self._guard)}
             self.stream.thread_type = "AUTO"
             self.stream.thread_count = self._threads
         except BaseException:

@@ -1,7 +1,7 @@
 """A video or GIF file, written frame by frame."""
 
 import contextlib
-import os
+import math
 from collections.abc import Iterator
 from fractions import Fraction
 
@@ -12,12 +12,13 @@ from av.video.frame import VideoFrame
 from av.video.stream import VideoStream
 
 from stages.media.audio import AudioTrack, open_audio
-from stages.media.color import YuvWriter, over_white, tag_bt709
+from stages.media.color import YuvWriter, over_white
 from stages.media.commit import PendingFile, output_error
 from stages.media.container import DAMAGE
+from stages.media.encoder_setup import EncodeOptions, set_up, settings_of
 from stages.media.frame_range import FrameRange
 from stages.media.info import MediaInfo
-from stages.media.output_plan import EncodeOptions, OutputPlan
+from stages.media.output_plan import OutputPlan
 from stages.media.palette import PaletteFilter
 
 _FAILURES = (*DAMAGE, OSError)
@@ -128,16 +129,13 @@ class VideoWriter:
         if format_name in ("mp4", "mov"):
             ticks = self._clock.denominator
             options["video_track_timescale"] = str(ticks)
-            # A late first picture is an edit in the movie's own, else coarser, clock.
-            options["movie_timescale"] = str(ticks * -(-1000 // ticks))
+            options["movie_timescale"] = str(_movie_clock(ticks, self._source.audio_rate))
         self._output = av.open(
             str(self._pending.path), "w", format=format_name, container_options=options
         )
         self._stream = self._add_video(pixel_format)
         self._palette = PaletteFilter() if pixel_format == "pal8" else None
-        self._colors = YuvWriter(
-            ("rgba" if pixels.shape[2] == 4 else "rgb24") if self._palette else pixel_format
-        )
+        self._colors = YuvWriter("rgb24" if self._palette else pixel_format)
         self._start = time if self._shifted else Fraction(0)
         if plan.audio:
             path = self._source.path
@@ -156,30 +154,19 @@ class VideoWriter:
         plan, options = self._plan, self._options
         assert self._output is not None
         assert plan.encoder is not None
-        settings = dict(plan.encoder.options)
-        if options.encoder_preset is not None:
-            settings["preset"] = options.encoder_preset
-        quality = plan.encoder.quality if options.crf is None else options.crf
-        if quality is not None:
-            settings["crf"] = str(quality)
-        if plan.encoder.name == "libsvtav1":
-            os.environ.setdefault("SVT_LOG", "1")  # it prints a banner otherwise
         rate = self._source.average_rate or Fraction(25)
+        settings = settings_of(plan.encoder, options)
         stream = self._output.add_stream(plan.encoder.name, rate=rate, options=settings)
         if not isinstance(stream, VideoStream):
             raise ValueError(f"{plan.encoder.name} is no video encoder")
         codec = stream.codec_context
-        codec.width, codec.height = plan.padded_width, plan.padded_height
-        codec.pix_fmt = pixel_format
-        codec.time_base = self._clock
+        size = (plan.padded_width, plan.padded_height)
+        set_up(codec, pixel_format, size, self._clock, options.threads)
         stream.time_base = self._clock
-        codec.thread_count = options.threads
         if plan.encoder.name != "gif":
             codec.sample_aspect_ratio = stream.sample_aspect_ratio = self._aspect()
         if plan.encoder.tag and plan.container and plan.container.format in ("mp4", "mov"):
             codec.codec_tag = plan.encoder.tag
-        if pixel_format.startswith("yuv"):
-            tag_bt709(codec)
         return stream
 
     def _aspect(self) -> Fraction:
@@ -225,3 +212,15 @@ class VideoWriter:
                 # Encoders leave it out, and the last frame's duration is the file's end.
                 packet.duration = self._durations.pop(packet.pts, 0)
                 self._output.mux(packet)
+
+
+def _movie_clock(ticks: int, audio_rate: int | None) -> int:
+    """Ticks a second in which mp4 states where its tracks start, so that none is rounded.
+
+    Args:
+        ticks: Ticks a second of the video track.
+        audio_rate: Samples a second of the sound, or None.
+    """
+    common = math.lcm(ticks, audio_rate or 1)
+    base = common if common < 2**31 else ticks
+    return base * -(-1000 // base)

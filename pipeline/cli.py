@@ -1,0 +1,172 @@
+"""The command `trimotion`: parses, dispatches, and turns every error into one line.
+
+Warp, OpenCV and FFmpeg are imported by the commands, after parsing: help and mistakes in an
+option come at once.
+"""
+
+import argparse
+import os
+import signal
+import sys
+import threading
+import traceback
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, NoReturn
+
+from pipeline.parser import build_parser
+
+INTERRUPTED = 130
+TERMINATED = 143
+
+
+class Terminated(BaseException):
+    """SIGTERM, raised in the main thread so that what is open cleans up after itself."""
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the command line.
+
+    Args:
+        argv: Arguments without the program's name; None for those of the process.
+
+    Returns:
+        0 done, 1 failed, 2 usage, 3 input unreadable, 4 output cannot be written, 130 or 143
+        interrupted.
+    """
+    _print_anything()
+    try:
+        arguments = build_parser().parse_args(argv)
+    except SystemExit as request:
+        return request.code if isinstance(request.code, int) else 2
+    try:
+        with _terminable():
+            COMMANDS[arguments.command](arguments)
+            sys.stdout.flush()
+    except BaseException as error:  # one place where every failure becomes a line and a code
+        if arguments.debug:
+            traceback.print_exc()
+        return _report(error)
+    return 0
+
+
+def run_animate(arguments: argparse.Namespace) -> None:
+    """Convert a source.
+
+    Args:
+        arguments: What the user gave; options that were left out are absent.
+    """
+    from pipeline.build_job import build_job
+    from pipeline.options import with_preset
+    from pipeline.preset_file import read_preset
+    from pipeline.progress import Summary, open_progress
+
+    given = dict(vars(arguments))
+    name = given.pop("preset")
+    job = build_job(with_preset(given, read_preset(name) if name else {}))
+    chosen = "none" if arguments.quiet and arguments.progress == "auto" else arguments.progress
+    with open_progress(chosen, verbose=arguments.verbose) as progress:
+        from pipeline.animate import animate
+
+        result = animate(job, progress)
+        for note in result.notes:
+            progress.note(note)
+        for warning in result.warnings:
+            progress.warn(warning)
+        progress.finish(Summary(result.frames, result.seconds, result.mean_rmse, job.output))
+
+
+def run_info(arguments: argparse.Namespace) -> None:
+    """Print what a file is.
+
+    Args:
+        arguments: What the user gave.
+    """
+    from pipeline.info import describe
+
+    print(describe(Path(arguments.file), as_json=arguments.json))
+
+
+def run_measure(arguments: argparse.Namespace) -> None:
+    """Print how close an output is to its source.
+
+    Args:
+        arguments: What the user gave.
+    """
+    from pipeline.build_job import frame_range
+    from pipeline.report import measure
+
+    wanted = frame_range(vars(arguments))
+    report = measure(Path(arguments.source), Path(arguments.output), wanted)
+    print(report.as_json() if arguments.json else report.as_table())
+
+
+COMMANDS: dict[str, Callable[[argparse.Namespace], None]] = {
+    "animate": run_animate,
+    "info": run_info,
+    "measure": run_measure,
+}
+"""What each subcommand runs."""
+
+
+def _report(error: BaseException) -> int:
+    """Tell about a failure in one line.
+
+    Args:
+        error: What ended the command.
+
+    Returns:
+        The exit code.
+    """
+    from warp_kernels.errors import TrimotionError
+
+    if isinstance(error, TrimotionError):
+        return _fail(str(error), error.exit_code)
+    if isinstance(error, KeyboardInterrupt):
+        return _fail("interrupted; no unfinished file is left", INTERRUPTED)
+    if isinstance(error, Terminated):
+        return _fail("terminated; no unfinished file is left", TERMINATED)
+    if isinstance(error, BrokenPipeError):
+        # The reader of our output left. What is still buffered must not raise at exit.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 1
+    if isinstance(error, MemoryError):
+        return _fail("out of memory; try a smaller --scale, or a smaller source", 1)
+    kind = type(error).__name__
+    return _fail(f"internal error ({kind}: {error}); run again with --debug and report it", 1)
+
+
+def _fail(text: str, code: int) -> int:
+    print("trimotion: error: " + " ".join(text.split()), file=sys.stderr)
+    return code
+
+
+def _print_anything() -> None:
+    """Let names of files through that are not text in the terminal's encoding."""
+    for stream in (sys.stdout, sys.stderr):
+        reconfigure: Any = getattr(stream, "reconfigure", None)
+        if reconfigure is not None:
+            reconfigure(errors="backslashreplace")
+
+
+@contextmanager
+def _terminable() -> Iterator[None]:
+    """Raise `Terminated` on SIGTERM while the block runs."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    previous = signal.signal(signal.SIGTERM, _terminate)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, previous)
+
+
+def _terminate(*_: object) -> NoReturn:
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)  # a second one must not disturb the clean-up
+    raise Terminated
+
+
+if __name__ == "__main__":
+    sys.exit(main())

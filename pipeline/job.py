@@ -1,0 +1,173 @@
+"""Everything that one run of `animate` needs, checked and with every default filled in.
+
+The options of the command line are the fields of `Job`, and of the dataclasses inside it, that
+carry `help`: their defaults, help and choices stand there and nowhere else. Metadata of a field:
+
+    help       what it does; a field without is not an option
+    choices    the values that it may have
+    metavar    how its value is shown in the help
+    flag       its name on the command line, if not its own name with dashes
+    registry   the registry whose members it names, as module:NAME
+    group      the heading in the help, if not that of its dataclass
+"""
+
+import re
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from stages.flows import Flow
+from stages.flows.dis import Dis
+from stages.layouts import Layout
+from stages.layouts.importance import Importance
+from stages.media import EncodeOptions, FrameRange
+from stages.triangulate import TriangulateOptions
+from warp_kernels.errors import OptionError
+from warp_kernels.raster import MAX_SIDE
+from warp_kernels.styles import Style
+
+MAX_THREADS = 1024
+"""More than any machine has cores; beyond it a number is a mistake."""
+
+_DEVICE = re.compile(r"auto|cpu|cuda(:\d+)?")
+
+
+@dataclass(frozen=True)
+class Job:
+    """One run: a source, an output and how the one becomes the other.
+
+    Raises:
+        OptionError: If an option has an impossible value.
+    """
+
+    source: Path
+    """What is converted: a video, a still or a pattern of numbered stills."""
+    output: Path
+    """What is written."""
+    frame_range: FrameRange = field(default_factory=FrameRange)
+    """The frames of the source that are converted."""
+    device: str = field(
+        default="auto",
+        metadata={"help": "where kernels run", "metavar": "auto|cpu|cuda:N"},
+    )
+    """`auto`, `cpu` or `cuda:N`."""
+    threads: int = field(default=0, metadata={"help": "threads of the CPU, 0 for one per core"})
+    """Threads of the CPU, 0 for one per core."""
+    seed: int = field(default=0, metadata={"help": "seed of all randomness"})
+    """Seed of all randomness."""
+    layout: Layout = field(
+        default_factory=Importance,
+        metadata={
+            "help": "first mesh of a shot; importance takes a grey picture: importance:MAP.png",
+            "registry": "stages.layouts:LAYOUTS",
+            "group": "triangles",
+        },
+    )
+    """Makes the first mesh of a shot."""
+    flow: Flow = field(
+        default_factory=Dis,
+        metadata={
+            "help": "how motion between frames is estimated",
+            "registry": "stages.flows:FLOWS",
+            "group": "motion",
+        },
+    )
+    """Estimates the motion between frames."""
+    triangulate: TriangulateOptions = field(default_factory=TriangulateOptions)
+    """How one picture becomes triangles."""
+    styles: tuple[Style, ...] = field(
+        default=(),
+        metadata={
+            "help": "look of the triangles, repeatable from bottom to top "
+            "(default: flat, or gradient with --color linear)",
+            "registry": "warp_kernels.styles:STYLES",
+            "flag": "style",
+            "group": "look",
+        },
+    )
+    """Looks, bottom to top; empty for the one that suits the colour model."""
+    output_size: tuple[int, int] | None = field(
+        default=None,
+        metadata={
+            "help": "size of the output (default: the source's)",
+            "metavar": "WxH",
+            "flag": "size",
+            "group": "look",
+        },
+    )
+    """Width and height of the output [px], or None."""
+    scale: float | None = field(
+        default=None,
+        metadata={"help": "size of the output relative to the source", "group": "look"},
+    )
+    """Size of the output relative to the source, or None."""
+    encode: EncodeOptions = field(default_factory=EncodeOptions)
+    """How the output is written."""
+    cuts: str = field(
+        default="auto",
+        metadata={
+            "help": "where a new shot starts: auto finds hard cuts, none ignores them, a file "
+            "lists the first frames of the shots (JSON or one number a line)",
+            "metavar": "auto|none|FILE",
+            "group": "motion",
+        },
+    )
+    """`auto`, `none`, or a file with the first frames of new shots."""
+    independent: bool = field(
+        default=False,
+        metadata={
+            "help": "triangulate every frame from scratch (flickers; for comparison)",
+            "group": "motion",
+        },
+    )
+    """Whether every frame starts from a new layout."""
+
+    def __post_init__(self) -> None:
+        if self.output_size is not None and self.scale is not None:
+            raise OptionError("--size and --scale exclude each other; give one of them")
+        if self.output_size is not None:
+            check_output_size(self.output_size, "--size {}x{}".format(*self.output_size))
+        if self.scale is not None and not 0 < self.scale <= MAX_SIDE:
+            raise OptionError(f"--scale {self.scale:g}: must be above 0; try 0.5 or 2")
+        if not _DEVICE.fullmatch(self.device):
+            raise OptionError(f"--device {self.device}: unknown; use auto, cpu or cuda:N")
+        if not 0 <= self.threads <= MAX_THREADS:
+            raise OptionError(
+                f"--threads {self.threads}: must lie between 0 (one per core) and {MAX_THREADS}"
+            )
+        if self.seed < 0:
+            raise OptionError(f"--seed {self.seed}: must be 0 or more")
+
+    def size_for(self, source_size: tuple[int, int]) -> tuple[int, int]:
+        """Size of the output for a source.
+
+        Args:
+            source_size: Width and height of the source, upright [px].
+
+        Returns:
+            Width and height [px].
+
+        Raises:
+            OptionError: If a scaled source has no pixel or too many.
+        """
+        if self.output_size is not None:
+            return self.output_size
+        if self.scale is None:
+            return source_size
+        width, height = (round(side * self.scale) for side in source_size)
+        what = f"--scale {self.scale:g} makes {width}x{height} of {source_size[0]}x{source_size[1]}"
+        check_output_size((width, height), what)
+        return width, height
+
+
+def check_output_size(size: tuple[int, int], what: str) -> None:
+    """Refuse sizes that no output can have.
+
+    Args:
+        size: Width and height [px].
+        what: The option, for the message.
+
+    Raises:
+        OptionError: If a side is below 1 or beyond `MAX_SIDE`.
+    """
+    if not 1 <= min(size) <= max(size) <= MAX_SIDE:
+        raise OptionError(f"{what}: sides must lie between 1 and {MAX_SIDE} pixels")

@@ -1,0 +1,106 @@
+"""Members of a registry as users write them: `edges:width=1.5,color=#222`, `importance:MAP.png`."""
+
+import dataclasses
+import math
+import types
+import typing
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from stages.media import open_decoder
+from warp_kernels.errors import OptionError
+
+LUMA = (0.2126, 0.7152, 0.0722)
+"""Weights of red, green and blue in grey, as BT.709 has them."""
+
+_SWITCHES = {"true": True, "yes": True, "1": True, "false": False, "no": False, "0": False}
+
+
+def parse_member(flag: str, text: str, registry: Mapping[str, type]) -> Any:
+    """Make a member of a registry.
+
+    Args:
+        flag: The option, for messages, such as `--style`.
+        text: `NAME`, `NAME:KEY=VALUE,...`; a value without a key is the first parameter's.
+        registry: Classes by name.
+
+    Raises:
+        OptionError: If the name, a parameter or a value is not allowed.
+        MediaError: If a picture that is a parameter cannot be read.
+    """
+    name, _, rest = text.partition(":")
+    if name not in registry:
+        raise OptionError(f"{flag} {text}: no {name!r}; choose from {', '.join(registry)}")
+    cls = registry[name]
+    kinds = _parameters(cls)
+    values: dict[str, Any] = {}
+    for key, value in _pairs(flag, text, rest, kinds):
+        if key not in kinds:
+            known = f"it has {', '.join(kinds)}" if kinds else "it has none; write the name alone"
+            raise OptionError(f"{flag} {text}: {name} has no parameter {key!r}; {known}")
+        if key in values:
+            raise OptionError(f"{flag} {text}: {key} is given twice; give it once")
+        values[key] = _convert(f"{flag} {text}: {key}", value, kinds[key])
+    try:
+        return cls(**values)
+    except OptionError as error:
+        problem = str(error).removeprefix(f"{text}: ")
+        raise OptionError(f"{flag} {text}: {problem}") from error
+
+
+def _parameters(cls: type) -> dict[str, Any]:
+    """Types of a dataclass's parameters, without None, by name."""
+    hints = typing.get_type_hints(cls)
+    fields = dataclasses.fields(cls)  # type: ignore[arg-type]
+    return {field.name: _without_none(hints[field.name]) for field in fields if field.init}
+
+
+def _without_none(hint: Any) -> Any:
+    if isinstance(hint, types.UnionType):
+        return next(part for part in typing.get_args(hint) if part is not types.NoneType)
+    return hint
+
+
+def _pairs(flag: str, text: str, rest: str, kinds: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """Split what follows a name into keys and values."""
+    first = next(iter(kinds), None)
+    takes_bare = first is not None and kinds[first] in (str, Path, np.ndarray)
+    if first is not None and takes_bare and Path(rest).is_file():
+        return [(first, rest)]  # whatever signs its name holds
+    pairs = []
+    for number, item in enumerate(rest.split(",") if rest else []):
+        key, equals, value = item.partition("=")
+        if not equals and number == 0 and first is not None and takes_bare:
+            key, value = first, item
+        elif not (key and equals and value):
+            raise OptionError(f"{flag} {text}: {item!r} is not KEY=VALUE; write name:key=value,...")
+        pairs.append((key.strip().replace("-", "_"), value.strip()))
+    return pairs
+
+
+def _convert(what: str, text: str, kind: Any) -> Any:
+    """Value of a parameter of a given type."""
+    try:
+        if kind is bool:
+            return _SWITCHES[text.lower()]
+        if kind is int:
+            return int(text)
+        if kind is float and math.isfinite(number := float(text)):
+            return number
+    except (ValueError, KeyError):
+        pass
+    if kind is np.ndarray:
+        return _read_gray(text)
+    if kind in (str, Path):
+        return kind(text)
+    wanted = {bool: "true or false", int: "a whole number", float: "a number"}[kind]
+    raise OptionError(f"{what}={text}: write {wanted}")
+
+
+def _read_gray(path: str) -> np.ndarray:
+    """The first frame of a picture as grey, [h, w] float64, 0 (black) to 1 (white)."""
+    with open_decoder(path) as decoder:
+        return next(decoder).pixels @ np.array(LUMA) / 255.0

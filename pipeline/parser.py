@@ -1,0 +1,162 @@
+"""The grammar of the command line: subcommands, their arguments, their help."""
+
+import argparse
+import difflib
+from collections.abc import Sequence
+from typing import Any, NoReturn
+
+from pipeline.flags import text_value
+from pipeline.options import add_job_options, add_range_options, registry_help
+from pipeline.progress import CHOICES
+
+ABOUT = "Turn videos into coherent triangulated animations."
+
+EXAMPLES = """\
+examples:
+  trimotion animate clip.mp4 -o triangles.mp4
+  trimotion animate clip.mp4 -o triangles.mp4 --triangles 3000 --style flat --style edges
+  trimotion animate clip.mp4 -o part.webm --frames 100-199 --color linear --scale 0.5
+  trimotion animate photo.jpg -o poster.png --triangles 700 --scale 2
+  trimotion animate clip.mp4 -o quick.mp4 --preset preview
+"""
+
+COMMANDS_HELP = """\
+commands:
+  animate INPUT -o OUTPUT    convert a video, a still or numbered stills
+  info FILE                  what a file is
+  measure SOURCE OUTPUT      how close an output is to its source
+
+trimotion COMMAND --help tells the options of a command.
+
+"""
+
+
+class OneLineParser(argparse.ArgumentParser):
+    """A parser whose errors are one line that ends with a remedy."""
+
+    def error(self, message: str) -> NoReturn:
+        """Print a mistake and leave with exit code 2."""
+        line = " ".join(message.removeprefix("argument ").split())
+        self.exit(2, f"trimotion: error: {line}; see {self.prog} --help\n")
+
+    def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
+        """Refuse unknown options here, where the similar ones are known."""
+        found, unknown = super().parse_known_args(args, namespace)
+        if unknown and self.get_default("command"):
+            self.error(_unknown(unknown, list(self._option_string_actions)))
+        return found, unknown
+
+
+class _Version(argparse.Action):
+    """Prints the version, which takes a while to find, only when asked."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> NoReturn:
+        from importlib import metadata
+
+        try:
+            version = metadata.version("trimotion")
+        except metadata.PackageNotFoundError:
+            version = "(not installed)"
+        print(f"trimotion {version}")
+        parser.exit()
+
+
+def build_parser() -> argparse.ArgumentParser:
+    """Make the parser; options of a job that were not given are absent from its result."""
+    parser = OneLineParser(
+        prog="trimotion",
+        description=ABOUT,
+        usage="trimotion COMMAND ... ",
+        epilog=COMMANDS_HELP + EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        allow_abbrev=False,
+    )
+    parser.add_argument("--version", action=_Version, nargs=0, help="print the version")
+    commands = parser.add_subparsers(
+        dest="command", metavar="COMMAND", required=True, help=argparse.SUPPRESS
+    )
+    _add_animate(commands)
+    _add_info(commands)
+    _add_measure(commands)
+    return parser
+
+
+def _add_animate(commands: Any) -> None:
+    parser = _command(
+        commands,
+        "animate",
+        "Convert a video, a still or numbered stills (shot_####.png) into triangles.",
+        "trimotion animate INPUT -o OUTPUT [options]",
+        registry_help() + "\n\n" + EXAMPLES,
+    )
+    parser.add_argument("source", metavar="INPUT", type=text_value, help="what FFmpeg reads")
+    parser.add_argument(
+        "-o",
+        dest="output",
+        metavar="OUTPUT",
+        type=text_value,
+        required=True,
+        help="mp4, mov, mkv, webm, gif, a still, or stills such as shot_####.png",
+    )
+    add_job_options(parser)
+    group = parser.add_argument_group("presets and messages")
+    group.add_argument(
+        "--preset",
+        metavar="FILE.toml",
+        type=text_value,
+        help="options from a file, or a shipped one: preview, fine; the command line beats it",
+    )
+    group.add_argument(
+        "--progress",
+        choices=CHOICES,
+        metavar="|".join(CHOICES),
+        default="auto",
+        help="auto is a bar on a terminal, else plain lines (default: auto)",
+    )
+    group.add_argument("-q", "--quiet", action="store_true", help="tell warnings and errors only")
+    group.add_argument("-v", "--verbose", action="store_true", help="tell choices that were made")
+
+
+def _add_info(commands: Any) -> None:
+    parser = _command(commands, "info", "Print what a file is.", "trimotion info FILE [--json]", "")
+    parser.add_argument("file", metavar="FILE", type=text_value, help="what FFmpeg reads")
+    parser.add_argument("--json", action="store_true", help="print JSON")
+
+
+def _add_measure(commands: Any) -> None:
+    parser = _command(
+        commands,
+        "measure",
+        "Compare an output with its source: rmse [code values], PSNR and R (Eq. 12).",
+        "trimotion measure SOURCE OUTPUT [--json]",
+        "",
+    )
+    parser.add_argument("source", metavar="SOURCE", type=text_value, help="what was converted")
+    parser.add_argument("output", metavar="OUTPUT", type=text_value, help="what came out")
+    parser.add_argument("--json", action="store_true", help="print JSON, with every frame")
+    add_range_options(parser)
+
+
+def _command(
+    commands: Any, name: str, description: str, usage: str, epilog: str
+) -> argparse.ArgumentParser:
+    parser: argparse.ArgumentParser = commands.add_parser(
+        name,
+        prog=f"trimotion {name}",
+        description=description,
+        usage=usage,
+        epilog=epilog,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        allow_abbrev=False,
+    )
+    parser.add_argument("--debug", action="store_true", help="show where an error arose")
+    parser.set_defaults(command=name)
+    return parser
+
+
+def _unknown(arguments: Sequence[str], known: Sequence[str]) -> str:
+    """What to say about arguments that no option takes."""
+    first = arguments[0].split("=")[0]
+    similar = difflib.get_close_matches(first, known, n=1) if first.startswith("-") else []
+    hint = f"; did you mean {similar[0]}?" if similar else ""
+    return f"{arguments[0]!r}: unknown{' option' if first.startswith('-') else ' argument'}{hint}"

@@ -1,0 +1,209 @@
+"""How far a run is: a bar, plain lines, JSON lines or nothing; `PROGRESS` names them.
+
+Everything for people goes to standard error, JSON lines go to standard output.
+"""
+
+import json
+import sys
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+PLAIN_INTERVAL = 2.0
+"""Time between two plain lines [s]."""
+
+
+@dataclass(frozen=True)
+class Summary:
+    """What a finished run has to say."""
+
+    frames: int
+    """Frames that were written."""
+    seconds: float
+    """How long it took [s]."""
+    mean_rmse: float
+    """Mean over the frames of their rmse [code values]."""
+    output: Path
+    """Where the result lies."""
+
+    @property
+    def fps(self) -> float:
+        """Frames per second."""
+        return self.frames / self.seconds if self.seconds > 0 else 0.0
+
+    def __str__(self) -> str:
+        noun = "frame" if self.frames == 1 else "frames"
+        return (
+            f"{self.frames} {noun} in {self.seconds:.1f} s ({self.fps:.1f} fps), "
+            f"mean rmse {self.mean_rmse:.2f}: {self.output}"
+        )
+
+
+class Progress:
+    """Tells nothing but notes and warnings; the other members tell more.
+
+    A context manager: leaving the block takes a bar off the screen.
+
+    Args:
+        verbose: Whether notes are told.
+    """
+
+    def __init__(self, *, verbose: bool = False) -> None:
+        self._verbose = verbose
+        self._start = time.perf_counter()
+
+    def frame(self, done: int, total: int | None, triangles: int, rmse: float) -> None:
+        """Tell that a frame is finished.
+
+        Args:
+            done: Number of frames finished so far.
+            total: Number of frames in all, None if unknown; may turn out to be wrong.
+            triangles: Triangles of this frame.
+            rmse: Its error [code values].
+        """
+
+    def note(self, text: str) -> None:
+        """Tell a choice that was made, if the user wants to know."""
+        if self._verbose:
+            self._print(f"trimotion: note: {text}")
+
+    def warn(self, text: str) -> None:
+        """Tell something that the user has to know."""
+        self._print(f"trimotion: warning: {text}")
+
+    def finish(self, summary: Summary) -> None:
+        """Tell that everything is done.
+
+        Args:
+            summary: What to say.
+        """
+
+    def close(self) -> None:
+        """Leave the screen tidy, whether all went well or not."""
+
+    def __enter__(self) -> "Progress":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def _fps(self, done: int) -> float:
+        return done / max(time.perf_counter() - self._start, 1e-9)
+
+    def _print(self, line: str) -> None:
+        print(line, file=sys.stderr, flush=True)
+
+
+class PlainProgress(Progress):
+    """A line every now and then, for log files."""
+
+    def __init__(self, *, verbose: bool = False) -> None:
+        super().__init__(verbose=verbose)
+        self._told = -PLAIN_INTERVAL
+
+    def frame(self, done: int, total: int | None, triangles: int, rmse: float) -> None:
+        """Tell about a frame if the last line is old enough, or if it is the last frame."""
+        now = time.perf_counter()
+        if now - self._told < PLAIN_INTERVAL and done != total:
+            return
+        self._told = now
+        goal = "" if total is None else f"/{total}"
+        fps = self._fps(done)
+        self._print(f"frame {done}{goal}  {fps:.1f} fps  {triangles} triangles  rmse {rmse:.2f}")
+
+    def finish(self, summary: Summary) -> None:
+        """Tell the summary."""
+        self._print(str(summary))
+
+
+class BarProgress(Progress):
+    """A bar on a terminal."""
+
+    def __init__(self, *, verbose: bool = False) -> None:
+        super().__init__(verbose=verbose)
+        self._bar: Any = None
+
+    def frame(self, done: int, total: int | None, triangles: int, rmse: float) -> None:
+        """Move the bar."""
+        if self._bar is None:
+            from tqdm import tqdm  # only a terminal needs it
+
+            self._bar = tqdm(total=total, unit="frame", file=sys.stderr, dynamic_ncols=True)
+        if self._bar.total is not None and done > self._bar.total:
+            self._bar.total = None  # the file declared fewer frames than it has
+        self._bar.set_postfix_str(f"{triangles} triangles, rmse {rmse:.2f}", refresh=False)
+        self._bar.update(done - self._bar.n)
+
+    def finish(self, summary: Summary) -> None:
+        """Tell the summary below the bar."""
+        self.close()
+        self._print(str(summary))
+
+    def close(self) -> None:
+        """Leave the bar as it stands and go on below it."""
+        if self._bar is not None:
+            self._bar.close()
+            self._bar = None
+
+    def _print(self, line: str) -> None:
+        if self._bar is None:
+            super()._print(line)
+        else:
+            self._bar.write(line, file=sys.stderr)
+
+
+class JsonProgress(Progress):
+    """One JSON object a line, told apart by `event`: frame, note, warning, done."""
+
+    def frame(self, done: int, total: int | None, triangles: int, rmse: float) -> None:
+        """Write a frame's figures."""
+        fps = round(self._fps(done), 3)
+        self._write("frame", done=done, total=total, fps=fps, triangles=triangles, rmse=rmse)
+
+    def note(self, text: str) -> None:
+        """Write a note; programs can tell what they want to know."""
+        self._write("note", text=text)
+
+    def warn(self, text: str) -> None:
+        """Write a warning, on standard error as well."""
+        self._write("warning", text=text)
+        super().warn(text)
+
+    def finish(self, summary: Summary) -> None:
+        """Write the summary."""
+        self._write(
+            "done",
+            frames=summary.frames,
+            seconds=round(summary.seconds, 3),
+            fps=round(summary.fps, 3),
+            mean_rmse=summary.mean_rmse,
+            output=str(summary.output),
+        )
+
+    def _write(self, event: str, **values: object) -> None:
+        print(json.dumps({"event": event, **values}), flush=True)
+
+
+PROGRESS: dict[str, type[Progress]] = {
+    "bar": BarProgress,
+    "plain": PlainProgress,
+    "json": JsonProgress,
+    "none": Progress,
+}
+"""By name; `auto` picks the bar on a terminal, else plain lines."""
+
+CHOICES = ("auto", "plain", "json", "none")
+"""What the command line offers: a bar that is not on a terminal is noise."""
+
+
+def open_progress(name: str, *, verbose: bool = False) -> Progress:
+    """Make a member of `PROGRESS`.
+
+    Args:
+        name: Its name, or `auto`.
+        verbose: Whether notes are told.
+    """
+    if name == "auto":
+        name = "bar" if sys.stderr.isatty() else "plain"
+    return PROGRESS[name](verbose=verbose)

@@ -1,0 +1,325 @@
+"""Written files: exact times, sizes, formats, and nothing half-finished under a name."""
+
+import subprocess
+import sys
+from fractions import Fraction
+from pathlib import Path
+
+import av
+import media_samples as samples
+import numpy as np
+import pytest
+
+from stages.media import (
+    EncodeOptions,
+    FrameRange,
+    MediaInfo,
+    check_output,
+    open_decoder,
+    open_encoder,
+    probe,
+)
+from warp_kernels.errors import OptionError, OutputError
+
+WHOLE = FrameRange()
+ROOT = Path(__file__).parent.parent
+
+
+def convert(
+    source: Path,
+    target: Path,
+    options: EncodeOptions | None = None,
+    wanted: FrameRange = WHOLE,
+) -> list[str]:
+    """Copy frames from a source to an output; returns the encoder's notes."""
+    with open_decoder(source, wanted) as decoder:
+        size = (decoder.info.width, decoder.info.height)
+        options = options or EncodeOptions()
+        with open_encoder(target, decoder.info, size, options, wanted) as encoder:
+            for frame in decoder:
+                encoder.write(frame.pixels, frame.pts, frame.time_base, frame.index)
+    return encoder.notes
+
+
+def times_of(path: Path) -> list[Fraction]:
+    """Times of all frames of a file [s]."""
+    with open_decoder(path) as decoder:
+        return [frame.pts * frame.time_base for frame in decoder]
+
+
+@pytest.fixture
+def clip(tmp_path: Path) -> Path:
+    """Six frames of 64 x 48 at uneven times."""
+    pictures = [samples.picture(64, 48, n) for n in range(6)]
+    pts = [0, 40, 90, 91, 400, 440]
+    return samples.write_video(
+        tmp_path / "in.mp4", pictures, pts=pts, time_base=samples.MILLISECOND
+    )
+
+
+@pytest.mark.parametrize("ending", ["mp4", "mov", "mkv", "webm"])
+def test_uneven_times_survive(clip: Path, ending: str) -> None:
+    """Every frame is shown exactly when the source shows it."""
+    target = clip.with_name(f"out.{ending}")
+    convert(clip, target)
+    assert times_of(target) == times_of(clip)
+
+
+@pytest.mark.parametrize("base", [Fraction(1, 30000), Fraction(417, 78125), Fraction(1, 3)])
+def test_any_time_base_survives_in_mp4(clip: Path, base: Fraction) -> None:
+    """The clock of the file is chosen so that no time is rounded, even of a late start."""
+    target = clip.with_name("out.mp4")
+    pts = [7, 8, 10, 11, 12, 19, 100]
+    with open_encoder(target, probe(clip), (64, 48), EncodeOptions(audio=False)) as encoder:
+        for number, time in enumerate(pts):
+            encoder.write(samples.picture(64, 48, number), time, base)
+    assert times_of(target) == [time * base for time in pts]
+
+
+def test_last_frame_keeps_its_length(clip: Path) -> None:
+    """The file ends when the source ends."""
+    target = clip.with_name("out.mp4")
+    convert(clip, target)
+    assert probe(target).duration == probe(clip).duration
+
+
+def test_huge_gap_is_not_filled(clip: Path) -> None:
+    """A million seconds between two frames stay two frames."""
+    target = clip.with_name("out.mkv")
+    with open_encoder(target, probe(clip), (64, 48), EncodeOptions(audio=False)) as encoder:
+        for time in (0, 40, 1_000_000_000):
+            encoder.write(samples.picture(64, 48), time, samples.MILLISECOND)
+    assert times_of(target) == [0, Fraction(1, 25), 1_000_000]
+
+
+def test_a_range_starts_at_zero(clip: Path) -> None:
+    """A part of a clip keeps its distances and starts at time 0."""
+    target = clip.with_name("out.mp4")
+    convert(clip, target, wanted=FrameRange(2, 4))
+    assert times_of(target) == [0, Fraction(1, 1000), Fraction(310, 1000)]
+
+
+def test_odd_size_is_padded(clip: Path) -> None:
+    """4:2:0 needs even sizes: a border pixel is repeated, and a note says so."""
+    target = clip.with_name("out.mp4")
+    info = probe(clip)
+    with open_encoder(target, info, (33, 17), EncodeOptions(audio=False, crf=0)) as encoder:
+        encoder.write(samples.picture(33, 17), 0, samples.MILLISECOND)
+    assert (probe(target).width, probe(target).height) == (34, 18)
+    assert any("34x18" in note for note in encoder.notes)
+
+
+def test_444_keeps_odd_sizes_and_colours(clip: Path) -> None:
+    """With yuv444p nothing is padded."""
+    target = clip.with_name("out.mp4")
+    options = EncodeOptions(audio=False, pixel_format="yuv444p")
+    with open_encoder(target, probe(clip), (33, 17), options) as encoder:
+        encoder.write(samples.picture(33, 17), 0, samples.MILLISECOND)
+    assert (probe(target).width, probe(target).pixel_format) == (33, "yuv444p")
+
+
+def test_pixel_aspect_is_copied(tmp_path: Path) -> None:
+    """Non-square pixels stay so, and turn with the picture."""
+    pictures = [samples.picture(64, 48)]
+    source = samples.write_video(
+        tmp_path / "in.mp4", pictures, aspect=Fraction(32, 27), rotation=90
+    )
+    convert(source, tmp_path / "out.mp4")
+    assert probe(tmp_path / "out.mp4").sample_aspect == Fraction(27, 32)
+    assert probe(tmp_path / "out.mp4").rotation == 0
+
+
+def test_four_tags_are_written(clip: Path) -> None:
+    """Matrix, range, primaries and transfer are all stated."""
+    target = clip.with_name("out.mp4")
+    convert(clip, target)
+    with av.open(str(target)) as written:
+        codec = written.streams.video[0].codec_context
+        tags = (codec.colorspace, codec.color_range, codec.color_primaries, codec.color_trc)
+    assert tags == (1, 1, 1, 1)
+
+
+@pytest.mark.parametrize("name", ["out_###.png", "out_%03d.tiff", "out_$F3.webp"])
+def test_numbered_stills_keep_pixels_and_numbers(clip: Path, name: str) -> None:
+    """Lossless stills are equal to the frames and named after them."""
+    convert(clip, clip.with_name(name), wanted=FrameRange(1, 5, 2))
+    ending = name.split(".")[1]
+    found = sorted(p.name for p in clip.parent.glob("out_*"))
+    assert found == [f"out_{n:03d}.{ending}" for n in (1, 3, 5)]
+    with open_decoder(clip, FrameRange(3, 3)) as a, open_decoder(clip.with_name(found[1])) as b:
+        assert np.array_equal(next(a).pixels, next(b).pixels)
+
+
+def test_jpeg_colours(clip: Path) -> None:
+    """A JPEG is full-range BT.601 and comes back within a few code values."""
+    target = clip.with_name("a.jpg")
+    pixels = samples.chart(256, 128)
+    with open_encoder(target, probe(clip), (256, 128), EncodeOptions(), FrameRange(0, 0)) as out:
+        out.write(pixels, 0, samples.MILLISECOND)
+    with open_decoder(target) as decoder:
+        found = samples.patch_colors(next(decoder).pixels)
+    assert np.abs(found - samples.CHART).max() <= 4
+
+
+def test_gif(clip: Path) -> None:
+    """A GIF has every frame, in hundredths of a second, in nearly the right colours."""
+    target = clip.with_name("out.gif")
+    convert(clip, target, EncodeOptions(audio=False))
+    assert times_of(target) == [Fraction(n, 100) for n in (0, 4, 9, 10, 40, 44)]
+    with open_decoder(clip) as a, open_decoder(target) as b:
+        assert np.abs(next(a).pixels.astype(int) - next(b).pixels).mean() < 4
+
+
+def test_transparency_is_kept_where_it_can_be(clip: Path) -> None:
+    """PNG keeps alpha; mp4 shows white there."""
+    pixels = np.zeros((48, 64, 4), np.uint8)
+    pixels[:24] = (0, 0, 255, 255)
+    still, video = clip.with_name("a.png"), clip.with_name("a.mp4")
+    for target in (still, video):
+        with open_encoder(target, probe(clip), (64, 48), EncodeOptions(), FrameRange(0, 0)) as out:
+            out.write(pixels, 0, samples.MILLISECOND)
+    assert probe(still).pixel_format == "rgba"
+    with open_decoder(video) as decoder:
+        assert next(decoder).pixels[40, 30].min() >= 254
+
+
+def test_existing_output_is_refused(clip: Path) -> None:
+    """Nothing is replaced unless that is asked for."""
+    target = clip.with_name("out.mp4")
+    target.write_bytes(b"precious")
+    with pytest.raises(OutputError, match="exists already"):
+        convert(clip, target)
+    assert target.read_bytes() == b"precious"
+    convert(clip, target, EncodeOptions(overwrite=True))
+    assert probe(target).frame_count == 6
+
+
+def test_input_is_never_overwritten(clip: Path) -> None:
+    """Not even when replacing is asked for."""
+    with pytest.raises(OutputError, match="the input itself"):
+        convert(clip, clip, EncodeOptions(overwrite=True))
+
+
+def test_missing_folder_and_folder_as_output(clip: Path) -> None:
+    """Both are told before any work is done."""
+    info = probe(clip)
+    with pytest.raises(OutputError, match="no folder"):
+        check_output(clip.parent / "none" / "a.mp4", info, (64, 48), EncodeOptions())
+    (clip.parent / "folder.mp4").mkdir()
+    with pytest.raises(OutputError, match="is a folder"):
+        check_output(clip.parent / "folder.mp4", info, (64, 48), EncodeOptions())
+
+
+def test_unwritable_output(clip: Path) -> None:
+    """A folder that takes no files is told before any work is done."""
+    with pytest.raises(OutputError):
+        check_output("/proc/out.mp4", probe(clip), (64, 48), EncodeOptions())
+
+
+@pytest.mark.parametrize(
+    ("name", "options"),
+    [
+        ("a.xyz", EncodeOptions()),
+        ("noending", EncodeOptions()),
+        ("a_##.mp4", EncodeOptions()),
+        ("a.webm", EncodeOptions(codec="h264")),
+        ("a.mp4", EncodeOptions(codec="nonsense")),
+        ("a.mp4", EncodeOptions(crf=99)),
+        ("a.mp4", EncodeOptions(pixel_format="rgb565")),
+        ("a.mp4", EncodeOptions(encoder_preset="warp")),
+        ("a.mov", EncodeOptions(codec="prores", crf=3)),
+        ("a_##.png", EncodeOptions(codec="h264")),
+        ("a.png", EncodeOptions()),
+    ],
+)
+def test_impossible_wishes_are_refused_early(clip: Path, name: str, options: EncodeOptions) -> None:
+    """What does not go together is an error before any work is done."""
+    with pytest.raises(OptionError):
+        check_output(clip.parent / name, probe(clip), (64, 48), options)
+
+
+@pytest.mark.parametrize("error", [KeyboardInterrupt, ValueError])
+@pytest.mark.parametrize("name", ["out.mp4", "out.mkv", "out.gif", "out.png"])
+def test_interruption_leaves_nothing(clip: Path, name: str, error: type[BaseException]) -> None:
+    """Whatever ends the work early, no file appears, not even a temporary one."""
+    before = sorted(clip.parent.iterdir())
+    info = probe(clip)
+    wanted = FrameRange(0, 0) if name.endswith("png") else WHOLE
+
+    def break_off() -> None:
+        target = clip.with_name(name)
+        with open_encoder(target, info, (64, 48), EncodeOptions(), wanted) as encoder:
+            encoder.write(samples.picture(64, 48), 0, samples.MILLISECOND)
+            raise error
+
+    with pytest.raises(error):
+        break_off()
+    assert sorted(clip.parent.iterdir()) == before
+
+
+def test_full_disk_is_an_output_error(clip: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """An error of the system while moving the file is told, and nothing is left."""
+
+    def refuse(source: object, target: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("stages.media.commit.os.replace", refuse)
+    before = sorted(clip.parent.iterdir())
+    with pytest.raises(OutputError, match="no space left"):
+        convert(clip, clip.with_name("out.mp4"))
+    assert sorted(clip.parent.iterdir()) == before
+
+
+def test_no_frame_is_an_error(clip: Path) -> None:
+    """An output without frames is not written."""
+    target = clip.with_name("out.mp4")
+    with (
+        pytest.raises(OutputError, match="no frame"),
+        open_encoder(target, probe(clip), (64, 48), EncodeOptions()),
+    ):
+        pass
+    assert not target.exists()
+
+
+def test_wrong_shape_and_time_are_programming_errors(clip: Path) -> None:
+    """The caller's mistakes are not blamed on the user's file."""
+    info: MediaInfo = probe(clip)
+    encoder = open_encoder(clip.with_name("out.mp4"), info, (64, 48), EncodeOptions())
+    with pytest.raises(ValueError, match="pixels"):
+        encoder.write(samples.picture(10, 10), 0, samples.MILLISECOND)
+    encoder.write(samples.picture(64, 48), 5, samples.MILLISECOND)
+    with pytest.raises(ValueError, match="increase"):
+        encoder.write(samples.picture(64, 48), 5, samples.MILLISECOND)
+    encoder.abort()
+
+
+FULL_DISK = """
+import resource, signal, sys
+from pathlib import Path
+from stages.media import EncodeOptions, open_decoder, open_encoder
+from warp_kernels.errors import OutputError
+
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000))
+source, target = sys.argv[1:]
+try:
+    with open_decoder(source) as decoder:
+        info = decoder.info
+        with open_encoder(target, info, (64, 48), EncodeOptions()) as encoder:
+            for frame in decoder:
+                encoder.write(frame.pixels, frame.pts, frame.time_base)
+except OutputError as error:
+    sys.exit(error.exit_code)
+"""
+
+
+@pytest.mark.parametrize("ending", ["mp4", "mkv", "gif"])
+def test_file_that_cannot_grow(tmp_path: Path, ending: str) -> None:
+    """When the disk takes no more, that is an OutputError and nothing is left."""
+    noise = np.random.default_rng(2).integers(0, 255, (60, 48, 64, 3), dtype=np.uint8)
+    source = samples.write_video(tmp_path / "in.mp4", list(noise))
+    before = sorted(tmp_path.iterdir())
+    script = [sys.executable, "-c", FULL_DISK, str(source), str(tmp_path / f"out.{ending}")]
+    done = subprocess.run(script, cwd=ROOT, timeout=60, capture_output=True, text=True)
+    assert done.returncode == OutputError.exit_code, done.stderr
+    assert sorted(tmp_path.iterdir()) == before
