@@ -59,7 +59,7 @@ def fill(cls: type, values: Mapping[str, Any]) -> Any:
         values: Values by field name; every dataclass takes those that it knows.
     """
     arguments = {}
-    for field in dataclasses.fields(cls):  # type: ignore[arg-type]
+    for field in dataclasses.fields(cls):
         nested = field.default_factory
         if field.name in values:
             arguments[field.name] = values[field.name]

@@ -127,7 +127,9 @@ class Job:
         if self.output_size is not None:
             check_output_size(self.output_size, "--size {}x{}".format(*self.output_size))
         if self.scale is not None and not 0 < self.scale <= MAX_SIDE:
-            raise OptionError(f"--scale {self.scale:g}: must be above 0; try 0.5 or 2")
+            raise OptionError(
+                f"--scale {self.scale:g}: must be above 0 and at most {MAX_SIDE}; try 2"
+            )
         if not _DEVICE.fullmatch(self.device):
             raise OptionError(f"--device {self.device}: unknown; use auto, cpu or cuda:N")
         if not 0 <= self.threads <= MAX_THREADS:

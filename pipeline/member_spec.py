@@ -54,7 +54,7 @@ def parse_member(flag: str, text: str, registry: Mapping[str, type]) -> Any:
 def _parameters(cls: type) -> dict[str, Any]:
     """Types of a dataclass's parameters, without None, by name."""
     hints = typing.get_type_hints(cls)
-    fields = dataclasses.fields(cls)  # type: ignore[arg-type]
+    fields = dataclasses.fields(cls)
     return {field.name: _without_none(hints[field.name]) for field in fields if field.init}
 
 

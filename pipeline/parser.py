@@ -157,6 +157,9 @@ def _command(
 def _unknown(arguments: Sequence[str], known: Sequence[str]) -> str:
     """What to say about arguments that no option takes."""
     first = arguments[0].split("=")[0]
-    similar = difflib.get_close_matches(first, known, n=1) if first.startswith("-") else []
+    if not first.startswith("-"):
+        return f"{arguments[0]!r}: unknown argument"
+    begun = [option for option in known if option.startswith(first)]
+    similar = begun or difflib.get_close_matches(first, known, n=1)
     hint = f"; did you mean {similar[0]}?" if similar else ""
-    return f"{arguments[0]!r}: unknown{' option' if first.startswith('-') else ' argument'}{hint}"
+    return f"{arguments[0]!r}: unknown option{hint}"

@@ -129,7 +129,7 @@ class BarProgress(Progress):
         if self._bar is None:
             from tqdm import tqdm  # only a terminal needs it
 
-            self._bar = tqdm(total=total, unit="frame", file=sys.stderr, dynamic_ncols=True)
+            self._bar = tqdm(total=total, unit=" frames", file=sys.stderr, dynamic_ncols=True)
         if self._bar.total is not None and done > self._bar.total:
             self._bar.total = None  # the file declared fewer frames than it has
         self._bar.set_postfix_str(f"{triangles} triangles, rmse {rmse:.2f}", refresh=False)

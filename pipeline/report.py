@@ -125,7 +125,8 @@ class Report:
             (f"worst (frame {worst.frame})", *_figures(worst.rmse, worst.psnr, worst.residual)),
         ]
         width = max(len(row[0]) for row in rows)
-        lines = [f"{len(self.frames)} frames at {self.size[0]}x{self.size[1]}"]
+        noun = "frame" if len(self.frames) == 1 else "frames"
+        lines = [f"{len(self.frames)} {noun} at {self.size[0]}x{self.size[1]}"]
         for label, *figures in rows:
             lines.append(f"{label:<{width}}" + "".join(f"{figure:>11}" for figure in figures))
         return "\n".join([*lines, *(f"note: {note}" for note in self.notes)])

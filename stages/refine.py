@@ -40,7 +40,7 @@ class RefineOptions:
             raise OptionError(f"--error {self.error:g}: must be above 0; try 0.5")
 
 
-def refine(
+def split_worst(
     mesh: Mesh, energies: np.ndarray, *, count: int, threshold: float | None = None
 ) -> Mesh:
     """Split the worst triangles at their centroids until there are `count`.

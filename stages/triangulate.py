@@ -4,34 +4,33 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from stages.collapse import collapse_slivers
-from stages.edits import legalise
+from stages.appraise import Appraiser
 from stages.frame import Frame
 from stages.layouts import Layout
 from stages.mesh import Mesh
 from stages.optimize import OptimizeOptions, load_mesh, optimize
-from stages.refine import RefineOptions, refine
+from stages.refine import RefineOptions
 from stages.snapshot import Snapshot
+from stages.topology import TOPOLOGIES, Goal
+from stages.topology.goal import SLIVER_HEIGHT
 from warp_kernels.color_model import COLOR_MODELS, ColorModel
 from warp_kernels.device import Device
 from warp_kernels.errors import OptionError
 from warp_kernels.solve import SUMS
 from warp_kernels.workspace import Workspace
 
-TOPOLOGIES = ("delaunay",)
-"""How edges are kept: by flips that restore the Delaunay property while the mesh refines."""
-
 LAYOUT_SHARE = 0.5
 """Part of the wanted triangles that the layout places; refinement places the rest."""
-REFINING_SHARE = 0.66
-"""Part of a first frame's iterations after which the number of triangles is reached (the paper
-refines during 400 of 600)."""
+FEW = 64
+"""Triangles of the layout where a threshold decides how many there will be."""
+REFINING_SHARE = 0.85
+"""Part of a first frame's iterations during which the topology changes (the paper: 400 of 600)."""
+GROWING_SHARE = 0.6
+"""Part of those after which the number of triangles is reached."""
 ROUND = 10
 """Iterations between two looks at the topology of a first frame."""
 LAST_TRUST = 0.1
 """Trust region of the last iteration beside the first one's: it shrinks so that vertices settle."""
-SLIVER_HEIGHT = 0.5
-"""Triangles thinner than this collapse [px]: hardly a pixel's centre lies in them."""
 SPRING = 1500.0
 """Strength of the temporal term [code value^2]: a vertex leaves the flow's path where the picture
 pulls harder than noise does."""
@@ -58,8 +57,11 @@ class TriangulateOptions:
         default=20, metadata={"help": "optimiser iterations for each later frame"}
     )
     topology: str = field(
-        default="delaunay",
-        metadata={"help": "how edges are kept while the mesh refines", "choices": TOPOLOGIES},
+        default="energy",
+        metadata={
+            "help": "flips that lower the energy, or the paper's Delaunay flips",
+            "choices": tuple(TOPOLOGIES),
+        },
     )
     sums: str = field(
         default="edges",
@@ -108,6 +110,8 @@ class Triangulator:
     ) -> None:
         self.options = options
         self._workspace = Workspace(device, size, options.model, options.sums)
+        self._topology = TOPOLOGIES[options.topology]()
+        self._appraiser = Appraiser(self._workspace, SLIVER_HEIGHT)
         self._fitting = self._workspace
         if drawn is not None and drawn.degree > options.model.degree:
             self._fitting = Workspace(device, size, drawn)
@@ -120,14 +124,9 @@ class Triangulator:
             layout: Makes the first mesh.
             rng: Randomness of the layout.
         """
-        options = self.options
         self._workspace.load_image(frame.pixels)
-        threshold = options.refine.error
-        start = options.refine.triangles if threshold is None else 64
-        mesh = layout.build(frame.pixels, max(2, round(LAYOUT_SHARE * start)), rng)
-        mesh = self._refine_from(mesh)
-        mesh = self._settle(mesh)
-        return self._snapshot(frame, mesh)
+        mesh = layout.build(frame.pixels, self._layout_count, rng)
+        return self._snapshot(frame, self._settle(self._refine(mesh)))
 
     def next(self, frame: Frame, seed: Mesh) -> Snapshot:
         """Triangulate a frame that continues a shot.
@@ -139,7 +138,8 @@ class Triangulator:
         options = self.options
         self._workspace.load_image(frame.pixels)
         mesh = self._follow(seed, seed, options.frame_iterations // 2)
-        mesh = self._refined(mesh, options.refine.triangles, everywhere=False)
+        goal = Goal(options.refine.triangles, options.refine.error, calm=True)
+        mesh = self._topology.adapt(mesh, self._appraiser, goal)
         mesh = self._follow(mesh, seed, options.frame_iterations - options.frame_iterations // 2)
         return self._snapshot(frame, mesh)
 
@@ -156,26 +156,25 @@ class Triangulator:
             self._workspace, mesh, iterations, self.options.optimize, dead_band=DEAD_BAND
         )
 
-    def _refine_from(self, mesh: Mesh) -> Mesh:
-        """Alternate optimisation and refinement until the wanted number is reached."""
+    @property
+    def _layout_count(self) -> int:
+        """Triangles of the first mesh: a part of the wanted number, or few for a threshold."""
+        refine = self.options.refine
+        count = FEW if refine.error is not None else round(LAYOUT_SHARE * refine.triangles)
+        return max(2, min(count, refine.triangles))
+
+    def _refine(self, mesh: Mesh) -> Mesh:
+        """Alternate optimisation and changes of topology until the wanted number is reached."""
         options = self.options
         rounds = max(1, int(options.iterations * REFINING_SHARE) // ROUND)
         goal, start = options.refine.triangles, mesh.triangle_count
         for number in range(1, rounds + 1):
             load_mesh(self._workspace, mesh)
             mesh = optimize(self._workspace, mesh, ROUND, options.optimize)
-            grown = round(start * (goal / start) ** (number / rounds))
-            mesh = self._refined(mesh, min(grown, goal))
+            grown = round(start * (goal / start) ** min(1.0, number / (GROWING_SHARE * rounds)))
+            target = Goal(min(grown, goal), options.refine.error)
+            mesh = self._topology.adapt(mesh, self._appraiser, target)
         return mesh
-
-    def _refined(self, mesh: Mesh, count: int, *, everywhere: bool = True) -> Mesh:
-        """Drop slivers, split the worst triangles up to `count`, restore Delaunay there."""
-        before = mesh.next_triangle_id
-        mesh = collapse_slivers(mesh, SLIVER_HEIGHT)
-        load_mesh(self._workspace, mesh)
-        _, energies, _ = self._workspace.fit()
-        mesh = refine(mesh, energies, count=count, threshold=self.options.refine.error)
-        return legalise(mesh, None if everywhere else mesh.triangle_ids >= before)
 
     def _settle(self, mesh: Mesh) -> Mesh:
         """The last iterations: no change of topology, smaller and smaller steps.

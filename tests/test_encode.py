@@ -92,6 +92,18 @@ def test_huge_gap_is_not_filled(clip: Path) -> None:
     assert times_of(target) == [0, Fraction(1, 25), 1_000_000]
 
 
+@pytest.mark.parametrize("ending", ["mp4", "gif"])
+def test_gap_that_a_format_cannot_state_is_told(clip: Path, ending: str) -> None:
+    """It is an error with a remedy, not a shorter gap."""
+    info, before = probe(clip), sorted(clip.parent.iterdir())
+    encoder = open_encoder(clip.with_name(f"a.{ending}"), info, (64, 48), EncodeOptions())
+    encoder.write(samples.picture(64, 48), 0, Fraction(1, 90000))
+    with pytest.raises(OutputError, match=r"write \.mkv"):
+        encoder.write(samples.picture(64, 48), 10**12, Fraction(1, 90000))
+    encoder.abort()
+    assert sorted(clip.parent.iterdir()) == before
+
+
 def test_a_range_starts_at_zero(clip: Path) -> None:
     """A part of a clip keeps its distances and starts at time 0."""
     target = clip.with_name("out.mp4")

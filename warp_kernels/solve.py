@@ -160,18 +160,17 @@ def _shifts(exponents: tuple[tuple[int, int], ...]) -> tuple[tuple[int, int, int
 
 
 @lru_cache(maxsize=None)
-def _best_fit(model: ColorModel, sums: str) -> tuple[Any, Any]:
-    """The solver of one variant: forward substitution, and what it takes to go backward."""
+def fit_moments(model: ColorModel) -> Any:
+    """A wp.func: from one triangle's moments to a `Fit`, after forward substitution."""
     types = moment_types(model)
     color_type, area_type = types.color, types.area
     terms = model.term_count
-    color_of, area_of = _gather(model, sums)
     centre_area, centre_color, factorise, matrix_type = _normal_equations(model)
     half_type = wp.types.matrix(shape=(terms, 3), dtype=wp.float64)
 
     @wp.struct
     class Fit:
-        """The least-squares colour of one variant, after forward substitution."""
+        """The least-squares colour of one triangle, after forward substitution."""
 
         count: wp.int64
         x: wp.int64
@@ -181,16 +180,11 @@ def _best_fit(model: ColorModel, sums: str) -> tuple[Any, Any]:
         half: half_type
 
     @wp.func
-    def fit(
-        triangle: int,
-        variant: int,
-        sides: wp.array(dtype=wp.vec3i),
-        color_sums: wp.array2d(dtype=color_type),
-        area_sums: wp.array2d(dtype=area_type),
-    ) -> Fit:
+    def fit(color_sums: color_type, area_sums: area_type) -> Fit:
+        """Factorise the normal equations and substitute forward."""
         result = Fit()
-        area = area_of(triangle, variant, sides, area_sums)
-        color = color_of(triangle, variant, sides, color_sums)
+        color = color_sums
+        area = area_sums
         if area[0] < wp.int64(0):  # turned inside out: the error of what it covers all the same
             area = -area
             color = -color
@@ -217,14 +211,15 @@ def _best_fit(model: ColorModel, sums: str) -> tuple[Any, Any]:
             result.energy = wp.float64(0.5) * wp.max(square - explained, wp.float64(0.0))
         return result
 
-    return fit, Fit
+    return fit
 
 
 @lru_cache(maxsize=None)
 def _energy_kernel(model: ColorModel, sums: str) -> Any:
     types = moment_types(model)
     color_type, area_type = types.color, types.area
-    fit, _ = _best_fit(model, sums)
+    color_of, area_of = _gather(model, sums)
+    fit = fit_moments(model)
 
     @wp.kernel(enable_backward=False, module="unique")
     def solve_variants(
@@ -239,8 +234,9 @@ def _energy_kernel(model: ColorModel, sums: str) -> Any:
         number = begin + wp.tid()
         triangle = number / wp.static(TRIANGLE_VARIANTS)
         variant = number - triangle * wp.static(TRIANGLE_VARIANTS)
-        best = fit(triangle, variant, sides, color_sums, area_sums)
-        energies_out[triangle, variant] = best.energy
+        color = color_of(triangle, variant, sides, color_sums)
+        area = area_of(triangle, variant, sides, area_sums)
+        energies_out[triangle, variant] = fit(color, area).energy
 
     return solve_variants
 
@@ -250,7 +246,8 @@ def _fit_kernel(model: ColorModel) -> Any:
     types = moment_types(model)
     color_type, area_type = types.color, types.area
     terms = model.term_count
-    fit, _ = _best_fit(model, "edges")
+    color_of, area_of = _gather(model, "edges")
+    fit = fit_moments(model)
     shifts = _shifts(model.exponents)
 
     @wp.kernel(enable_backward=False, module="unique")
@@ -268,7 +265,8 @@ def _fit_kernel(model: ColorModel) -> Any:
         counts_out: wp.array(dtype=wp.int64),
     ):
         triangle = begin + wp.tid()
-        best = fit(triangle, 0, sides, color_sums, area_sums)
+        color = color_of(triangle, 0, sides, color_sums)
+        best = fit(color, area_of(triangle, 0, sides, area_sums))
         energies_out[triangle] = best.energy
         counts_out[triangle] = best.count
         # from pixel numbers counted from the triangle's own middle to positions in the image

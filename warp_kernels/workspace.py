@@ -47,13 +47,13 @@ class Workspace:
         width, height = size
         types = moment_types(model)
         self._pixels = self._empty((height, width), wp.vec3ub)
-        self._table = self._empty(height * (width + 1) * model.table_depth, wp.vec4i)
-        self._powers = wp.array(
+        self.table = self._empty(height * (width + 1) * model.table_depth, wp.vec4i)
+        self.powers = wp.array(
             column_powers(width, model), dtype=types.powers, device=device.warp
         )
         self._controls = self._empty(3, wp.float64)
         self._tables = record_image_tables(
-            device, model, pixels=self._pixels, table_out=self._table
+            device, model, pixels=self._pixels, table_out=self.table
         )
         self._counts = (0, 0, 0)
         self._front = 0
@@ -97,11 +97,11 @@ class Workspace:
         self._front = 0
         for array, values in (
             (self._vertices[0], vertices),
-            (self._triangles, triangles),
+            (self.triangles, triangles),
             (self._edges, edges),
             (self._sides, sides),
-            (self._fan_offsets, fan_offsets),
-            (self._fan_corners, fan_corners),
+            (self.fan_offsets, fan_offsets),
+            (self.fan_corners, fan_corners),
             (self._freedom, freedom),
             (self._anchors, anchors),
         ):
@@ -134,6 +134,16 @@ class Workspace:
             self.device.run(there)
             self._front = 1
 
+    @property
+    def capacity(self) -> tuple[int, int]:
+        """Vertices and triangles that the arrays hold."""
+        return self._capacity
+
+    @property
+    def standing(self) -> wp.array:
+        """The vertices as they stand now, [V] vec2d on the device."""
+        return self._vertices[self._front]
+
     def vertices(self) -> np.ndarray:
         """Positions as they stand now [px], [V, 2] float64."""
         return self.device.read(self._vertices[self._front], self._counts[0])
@@ -159,7 +169,7 @@ class Workspace:
         count = self._counts[1]
         return (
             self.device.read(self._coefficients, count),
-            self.device.read(self._fit_energies, count),
+            self.device.read(self.fit_energies, count),
             self.device.read(self._fit_counts, count),
         )
 
@@ -179,11 +189,11 @@ class Workspace:
         if self.sums == "fragments":
             rows = (triangles, TRIANGLE_VARIANTS)
         self._vertices = (self._empty(vertices, wp.vec2d), self._empty(vertices, wp.vec2d))
-        self._triangles = self._empty(triangles, wp.vec3i)
+        self.triangles = self._empty(triangles, wp.vec3i)
         self._edges = self._empty(edges, wp.vec2i)
         self._sides = self._empty(triangles, wp.vec3i)
-        self._fan_offsets = self._empty(vertices + 1, wp.int32)
-        self._fan_corners = self._empty(3 * triangles, wp.int32)
+        self.fan_offsets = self._empty(vertices + 1, wp.int32)
+        self.fan_corners = self._empty(3 * triangles, wp.int32)
         self._freedom = self._empty(vertices, wp.vec2d)
         self._anchors = self._empty(vertices, wp.vec3d)
         self._memory = self._empty(vertices, wp.vec4d)
@@ -193,13 +203,13 @@ class Workspace:
         self._fit_color_sums = self._empty((edges, 1), types.color)
         self._fit_area_sums = self._empty((edges, 1), types.area)
         self._coefficients = self._empty((triangles, 3, self.model.term_count), wp.float64)
-        self._fit_energies = self._empty(triangles, wp.float64)
+        self.fit_energies = self._empty(triangles, wp.float64)
         self._fit_counts = self._empty(triangles, wp.int64)
         self._record()
 
     def _record(self) -> None:
         """Record every launch anew: the arrays have moved."""
-        common = {"table": self._table, "powers": self._powers, "size": self.size}
+        common = {"table": self.table, "powers": self.powers, "size": self.size}
         self._moments = [self._record_moments(front) for front in self._vertices]
         self._energy = record_energies(
             self.device,
@@ -214,10 +224,10 @@ class Workspace:
             record_descent(
                 self.device,
                 vertices=self._vertices[front],
-                triangles=self._triangles,
+                triangles=self.triangles,
                 energies=self._energies,
-                fan_offsets=self._fan_offsets,
-                fan_corners=self._fan_corners,
+                fan_offsets=self.fan_offsets,
+                fan_corners=self.fan_corners,
                 freedom=self._freedom,
                 anchors=self._anchors,
                 controls=self._controls,
@@ -247,7 +257,7 @@ class Workspace:
             area_sums=self._fit_area_sums,
             size=self.size,
             coefficients_out=self._coefficients,
-            energies_out=self._fit_energies,
+            energies_out=self.fit_energies,
             counts_out=self._fit_counts,
         )
 
@@ -257,9 +267,9 @@ class Workspace:
                 self.device,
                 self.model,
                 vertices=vertices,
-                triangles=self._triangles,
+                triangles=self.triangles,
                 pixels=self._pixels,
-                powers=self._powers,
+                powers=self.powers,
                 color_out=self._color_sums,
                 area_out=self._area_sums,
             )
@@ -268,8 +278,8 @@ class Workspace:
             self.model,
             vertices=vertices,
             edges=self._edges,
-            table=self._table,
-            powers=self._powers,
+            table=self.table,
+            powers=self.powers,
             size=self.size,
             color_out=self._color_sums,
             area_out=self._area_sums,

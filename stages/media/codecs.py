@@ -94,7 +94,7 @@ ENCODERS = {
         24,
         0,
         63,
-        {"deadline": "good", "cpu-used": "5", "row-mt": "1", "tile-columns": "1"},
+        {"deadline": "realtime", "cpu-used": "5", "row-mt": "1", "tile-columns": "1"},
         alpha_format="yuva420p",
         odd_sizes=True,
     ),

@@ -196,6 +196,9 @@ class _FileDecoder(Decoder):
             return count < declared
         if info.kind == "image" or info.duration is None or info.average_rate is None:
             return False
+        stream = self._source.stream
+        if not stream.duration and "DURATION" not in stream.metadata and info.audio_codec:
+            return False  # the length known may be that of the sound
         missing = info.start_time + info.duration - self._end
         return missing > max(5 / info.average_rate, info.duration / 20)
 

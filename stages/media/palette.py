@@ -35,7 +35,7 @@ class PaletteFilter:
 def _link_palette(graph: Graph, source: FilterContext, sink: FilterContext) -> None:
     split = graph.add("split")
     choose = graph.add("palettegen", "stats_mode=single:reserve_transparent=0")
-    apply = graph.add("paletteuse", "new=1:dither=sierra2_4a")
+    apply = graph.add("paletteuse", "new=1:dither=bayer:bayer_scale=4")
     source.link_to(split)
     split.link_to(apply, 0, 0)
     split.link_to(choose, 1, 0)

@@ -1,5 +1,6 @@
 """What a source is, learnt from its header and its first frame."""
 
+import re
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
@@ -17,6 +18,10 @@ from stages.media.source import VideoSource
 
 SEQUENCE_RATE = Fraction(25)
 """Frames per second of numbered stills, which carry no times."""
+
+_CLOCK = re.compile(r"(\d+):(\d\d):(\d\d(?:\.\d+)?)")
+_LEAST_BYTES = 8
+"""A stored frame takes at least this much, its header included [bytes]."""
 
 _BARE_STREAMS = frozenset(
     {"av1", "cavsvideo", "dirac", "h261", "h263", "h264", "hevc", "m4v", "mjpeg", "mpegvideo"}
@@ -143,6 +148,10 @@ def _duration(source: VideoSource) -> Fraction | None:
     stream = source.stream
     if stream.duration and stream.duration > 0:
         return stream.duration * source.time_base
+    tagged = _CLOCK.match(stream.metadata.get("DURATION", ""))
+    if tagged:  # Matroska states where each track ends
+        end = int(tagged[1]) * 3600 + int(tagged[2]) * 60 + Fraction(tagged[3])
+        return max(Fraction(0), end - (stream.start_time or 0) * source.time_base) or None
     whole = source.container.duration
     return Fraction(whole, av.time_base) if whole and whole > 0 else None
 
@@ -151,4 +160,8 @@ def _frame_count(source: VideoSource) -> int | None:
     if source.stream.frames > 0:
         return int(source.stream.frames)
     duration, rate = _duration(source), source.average_rate
-    return max(1, round(duration * rate)) if duration and rate else None
+    if not duration or not rate:
+        return None
+    implied = max(1, round(duration * rate))
+    # A jump of the clock would imply more frames than the file has room for.
+    return implied if implied * _LEAST_BYTES <= source.path.stat().st_size else None

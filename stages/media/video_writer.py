@@ -20,11 +20,13 @@ from stages.media.frame_range import FrameRange
 from stages.media.info import MediaInfo
 from stages.media.output_plan import OutputPlan
 from stages.media.palette import PaletteFilter
+from warp_kernels.errors import OutputError
 
 _FAILURES = (*DAMAGE, OSError)
 _COARSE = {"gif": Fraction(1, 100), "matroska": Fraction(1, 1000), "webm": Fraction(1, 1000)}
 """Formats with a clock of their own; mp4 and mov take any."""
-_LONGEST = 2**31 - 1
+_LONGEST = {"gif": 2**16 - 1, "mp4": 2**31 - 1, "mov": 2**31 - 1}
+"""Longest time for which a picture can be shown [units of the file's clock]."""
 
 
 class VideoWriter:
@@ -199,8 +201,15 @@ class VideoWriter:
 
     def _encode_held(self, duration: int) -> None:
         assert self._held is not None
-        self._held.duration = min(duration, _LONGEST)
-        self._durations[self._held_pts] = self._held.duration
+        assert self._plan.container is not None
+        if duration > _LONGEST.get(self._plan.container.format, duration):
+            raise OutputError(
+                self._plan.path,
+                f"a frame is shown for {float(duration * self._clock):.0f} s, longer than "
+                f"{self._plan.container.format} can state",
+                "write .mkv, or leave the gap out with --frames",
+            )
+        self._durations[self._held_pts] = duration
         if self._audio is not None:
             self._audio.advance(self._held_time)
         self._mux(self._palette.push(self._held) if self._palette else iter((self._held,)))

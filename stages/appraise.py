@@ -1,0 +1,44 @@
+"""Measure what triangles cost and what changes of topology would gain."""
+
+import numpy as np
+
+from stages.mesh import Mesh
+from stages.optimize import load_mesh
+from warp_kernels.survey import Survey
+from warp_kernels.workspace import Workspace
+
+
+class Appraiser:
+    """Energies and gains of one mesh at a time, over the picture in a workspace.
+
+    Args:
+        workspace: Holds the picture.
+        least_height: Changes that would leave a triangle thinner than this are impossible [px].
+    """
+
+    def __init__(self, workspace: Workspace, least_height: float) -> None:
+        self._workspace = workspace
+        self._survey = Survey(workspace, least_height)
+
+    def energies(self, mesh: Mesh) -> np.ndarray:
+        """Take a mesh and measure it.
+
+        Returns:
+            E(T) [code value^2 px], [T].
+        """
+        load_mesh(self._workspace, mesh)
+        _, energies, _ = self._workspace.fit()
+        self._survey.load_topology(mesh.twins, mesh.triangles.reshape(-1))
+        return energies
+
+    def flip_gains(self, half_edges: np.ndarray) -> np.ndarray:
+        """Energy that flipping each edge of the measured mesh saves [code value^2 px], [N]."""
+        return self._survey.flip_gains(half_edges)
+
+    def collapse_costs(self, half_edges: np.ndarray) -> np.ndarray:
+        """Energy that moving each origin into its destination adds [code value^2 px], [N]."""
+        return self._survey.collapse_costs(half_edges)
+
+    def split_gains(self, half_edges: np.ndarray) -> np.ndarray:
+        """Energy that splitting each edge in the middle saves [code value^2 px], [N]."""
+        return self._survey.split_gains(half_edges)

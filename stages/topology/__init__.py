@@ -1,0 +1,29 @@
+"""How the edges of a mesh are kept: `TOPOLOGIES` names the ways for the command line.
+
+A topology is a frozen dataclass of parameters with one method
+`adapt(mesh, appraiser, goal) -> Mesh`; a new one is a file and a line here.
+"""
+
+from typing import Protocol
+
+from stages.appraise import Appraiser
+from stages.mesh import Mesh
+from stages.topology.delaunay import Delaunay
+from stages.topology.energy import Energy
+from stages.topology.goal import Goal
+
+__all__ = ["TOPOLOGIES", "Goal", "Topology"]
+
+
+class Topology(Protocol):
+    """What every member of `TOPOLOGIES` can do."""
+
+    def adapt(self, mesh: Mesh, appraiser: Appraiser, goal: Goal) -> Mesh:
+        """Bring a mesh closer to a goal by edits; its vertices stay where they are."""
+        ...
+
+
+TOPOLOGIES: dict[str, type[Topology]] = {
+    "delaunay": Delaunay,
+    "energy": Energy,
+}

@@ -1,0 +1,33 @@
+"""The paper's way: split the worst triangles, collapse slivers, keep the Delaunay property."""
+
+from dataclasses import dataclass
+
+from stages.appraise import Appraiser
+from stages.collapse import collapse_slivers
+from stages.edits import legalise
+from stages.mesh import Mesh
+from stages.refine import split_worst
+from stages.topology.goal import SLIVER_HEIGHT, Goal
+
+
+@dataclass(frozen=True)
+class Delaunay:
+    """Centroids of the worst triangles, and edges flipped until the mesh is Delaunay.
+
+    Source: Lawonn & Guenther, Stylized Image Triangulation (2018), Sec. 3.4.
+    """
+
+    def adapt(self, mesh: Mesh, appraiser: Appraiser, goal: Goal) -> Mesh:
+        """Collapse, split and flip.
+
+        Args:
+            mesh: A valid mesh.
+            appraiser: Measures it.
+            goal: What to reach. Followed calmly, only the surroundings of what changed are made
+                Delaunay again: restoring the whole mesh would make triangles pop in every frame.
+        """
+        fresh = mesh.next_triangle_id
+        mesh = collapse_slivers(mesh, SLIVER_HEIGHT)
+        energies = appraiser.energies(mesh)
+        mesh = split_worst(mesh, energies, count=goal.count, threshold=goal.threshold)
+        return legalise(mesh, mesh.triangle_ids >= fresh if goal.calm else None)

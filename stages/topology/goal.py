@@ -1,0 +1,19 @@
+"""What a change of topology is to achieve."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Goal:
+    """How many triangles, and how much may change on the way."""
+
+    count: int
+    """Number of triangles to reach, give or take one."""
+    threshold: float | None = None
+    """Only triangles with sqrt(E(T) / |I|) above this are split [code values]; None for all."""
+    calm: bool = False
+    """Whether a picture is being followed: only what clearly pays may change."""
+
+
+SLIVER_HEIGHT = 0.5
+"""Triangles thinner than this collapse [px]: hardly a pixel's centre lies in them."""

@@ -1,0 +1,162 @@
+"""Vertices move downhill, within their borders, and never turn a triangle over."""
+
+import numpy as np
+import pytest
+
+from stages.mesh import Mesh, mesh_of
+from stages.validate import assert_valid
+from tests.kernel_samples import noise, poisoned_workspace, random_mesh, waves
+from tests.oracles.gradient import umbrella_gradient, vertex_gradient
+from warp_kernels.color_model import COLOR_MODELS, CONSTANT, LINEAR, ColorModel
+from warp_kernels.device import Device
+
+DIRECTION_TOLERANCE = 1e-9
+"""Sine of the angle allowed between two directions: rounding of float64 sums."""
+WIDTH, HEIGHT = 61, 47
+MODELS = pytest.mark.parametrize("model", COLOR_MODELS.values(), ids=COLOR_MODELS)
+
+
+def freedom(mesh: Mesh) -> np.ndarray:
+    """Whether a coordinate of a vertex may change, [V, 2] bool."""
+    return np.stack([~mesh.on_left_right, ~mesh.on_top_bottom], axis=1)
+
+
+@MODELS
+def test_first_step_goes_down_the_gradient(model: ColorModel, device: str) -> None:
+    """Along each axis a vertex moves against the derivative of Eq. 7, or not at all."""
+    picture, mesh = waves(WIDTH, HEIGHT), random_mesh(WIDTH, HEIGHT, 50)
+    workspace = poisoned_workspace(Device(device), picture, mesh, model)
+    energies = workspace.energies()
+    workspace.iterate(1, trust=0.01, regularity=1.0)
+    steps = workspace.vertices() - mesh.vertices
+    gradients = np.array(
+        [vertex_gradient(mesh, energies, v, 1.0) for v in range(mesh.vertex_count)]
+    )
+    clear = freedom(mesh) & (np.abs(gradients) > 1.0)
+    assert clear.sum() > 80
+    np.testing.assert_array_equal(np.sign(steps[clear]), -np.sign(gradients[clear]))
+    assert np.linalg.norm(steps, axis=1).max() <= 0.01 * (1 + 1e-12)
+
+
+def test_regularity_pulls_towards_the_middle_of_the_ring(device: str) -> None:
+    """Where the picture has one colour, Eq. 9 alone decides: straight to the ring's mean."""
+    plain = np.full((HEIGHT, WIDTH, 3), 90, dtype=np.uint8)
+    mesh = random_mesh(WIDTH, HEIGHT, 50)
+    workspace = poisoned_workspace(Device(device), plain, mesh, CONSTANT)
+    workspace.iterate(1, trust=1e3, regularity=1.0)
+    steps = workspace.vertices() - mesh.vertices
+    inner = np.flatnonzero(freedom(mesh).all(axis=1))
+    for vertex in inner:
+        goal, step = -umbrella_gradient(mesh, vertex), steps[vertex]
+        assert goal @ step > 0
+        sine = (goal[0] * step[1] - goal[1] * step[0]) / np.linalg.norm(goal)
+        assert abs(sine) <= DIRECTION_TOLERANCE * np.linalg.norm(step)
+        assert np.linalg.norm(step) <= np.linalg.norm(goal) * (1 + 1e-12)
+
+
+def test_ring_of_a_border_vertex_counts_every_neighbour_once(device: str) -> None:
+    """Eq. 9 on the border: a vertex at the mean of its ring has no reason to slide."""
+    # ring of (10, 0): the corners at 0 and 20, and one inner vertex that is off to the right
+    inner_x = 17.0
+    mean = (0 + 20 + inner_x) / 3
+    mesh = _fan_below(mean, inner_x)
+    plain = np.full((mesh.height, mesh.width, 3), 90, dtype=np.uint8)
+    workspace = poisoned_workspace(Device(device), plain, mesh, CONSTANT)
+    vertex = int(np.flatnonzero((mesh.vertices == (mean, 0)).all(axis=1))[0])
+    np.testing.assert_allclose(umbrella_gradient(mesh, vertex)[0], 0.0, atol=1e-12)
+    workspace.iterate(1, trust=1e3, regularity=1.0)
+    assert workspace.vertices()[vertex, 0] == pytest.approx(mean, abs=1e-9)
+
+
+def _fan_below(x: float, inner_x: float) -> Mesh:
+    """A square of 20 px with one vertex on its upper border and one inside."""
+    points = np.array([[0, 0], [20, 0], [20, 20], [0, 20], [x, 0], [inner_x, 8]])
+    rows = [[0, 4, 5], [4, 1, 5], [1, 2, 5], [2, 3, 5], [3, 0, 5]]
+    return mesh_of(points, rows, 20, 20)
+
+
+def test_border_vertices_slide_and_corners_stay(device: str) -> None:
+    """After many large steps the border is where it was, and its vertices have moved along it."""
+    mesh = random_mesh(WIDTH, HEIGHT, 50, border=20)
+    workspace = poisoned_workspace(Device(device), waves(WIDTH, HEIGHT), mesh, CONSTANT)
+    workspace.iterate(60, trust=2.0, regularity=1e-3)
+    moved = workspace.vertices() != mesh.vertices
+    free = freedom(mesh)
+    assert not moved[~free].any()
+    sliding = free.sum(axis=1) == 1
+    assert moved[sliding].any(axis=1).mean() > 0.5
+    assert moved[free.all(axis=1)].all(axis=1).mean() > 0.9
+
+
+@MODELS
+@pytest.mark.parametrize("trust", [0.2, 5.0, 1e4])
+def test_no_triangle_turns_over_on_noise(trust: float, model: ColorModel, device: str) -> None:
+    """Two hundred iterations on noise, however far vertices would like to go."""
+    mesh = random_mesh(WIDTH, HEIGHT, 120, seed=2)
+    workspace = poisoned_workspace(Device(device), noise(WIDTH, HEIGHT), mesh, model)
+    for _ in range(20):
+        workspace.iterate(10, trust=trust, regularity=1e-3)
+        assert_valid(mesh.moved(workspace.vertices()))
+
+
+@MODELS
+def test_energy_falls(model: ColorModel, device: str) -> None:
+    """Eighty iterations take away a fifth of the error or more, and every ten of them some."""
+    mesh = random_mesh(WIDTH, HEIGHT, 60, seed=3)
+    workspace = poisoned_workspace(Device(device), waves(WIDTH, HEIGHT), mesh, model)
+    totals = [workspace.energies()[:, 0].sum()]
+    for _ in range(8):
+        workspace.iterate(10, trust=0.3, regularity=1e-3)
+        totals.append(workspace.energies()[:, 0].sum())
+    assert (np.diff(totals[:5]) < 0).all()
+    assert totals[-1] < 0.8 * totals[0]
+
+
+@pytest.mark.parametrize("sums", ["edges", "fragments"])
+@MODELS
+def test_same_bits_on_any_number_of_threads(model: ColorModel, sums: str, device: str) -> None:
+    """One, two and three threads, and ten times three iterations for thirty: the same vertices."""
+    picture, mesh = noise(WIDTH, HEIGHT), random_mesh(WIDTH, HEIGHT, 50)
+    results = []
+    for threads, rounds in ((1, 1), (1, 10), (2, 1), (3, 1)):
+        workspace = poisoned_workspace(Device(device, threads), picture, mesh, model, sums)
+        for _ in range(rounds):
+            workspace.iterate(30 // rounds, trust=0.5, regularity=1e-3)
+        results.append(workspace.vertices())
+    for other in results[1:]:
+        np.testing.assert_array_equal(other, results[0])
+
+
+def test_both_sums_move_vertices_alike(device: str) -> None:
+    """Equal integers give equal steps: `edges` and `fragments` end at the same bits."""
+    picture, mesh = noise(WIDTH, HEIGHT), random_mesh(WIDTH, HEIGHT, 50)
+    ends = []
+    for sums in ("edges", "fragments"):
+        workspace = poisoned_workspace(Device(device), picture, mesh, LINEAR, sums)
+        workspace.iterate(25, trust=0.5, regularity=1e-3)
+        ends.append(workspace.vertices())
+    np.testing.assert_array_equal(*ends)
+
+
+@MODELS
+def test_mirrored_mesh_moves_alike(model: ColorModel, device: str) -> None:
+    """Ten steps over the mirrored picture lead to the mirrored places."""
+    picture, mesh = waves(WIDTH, HEIGHT), random_mesh(WIDTH, HEIGHT, 50)
+    flipped = (mesh.vertices - (WIDTH, 0)) * (-1, 1)
+    mirrored = mesh_of(flipped, mesh.triangles[:, [0, 2, 1]], WIDTH, HEIGHT)
+    ends = []
+    for pixels, start in ((picture, mesh), (picture[:, ::-1].copy(), mirrored)):
+        workspace = poisoned_workspace(Device(device), pixels, start, model)
+        workspace.iterate(10, trust=0.3, regularity=1e-3)
+        ends.append(workspace.vertices())
+    np.testing.assert_allclose((ends[1] - (WIDTH, 0)) * (-1, 1), ends[0], atol=1e-6)
+
+
+def test_no_iteration_moves_nothing(device: str) -> None:
+    """Zero iterations leave every bit; a dead band above all steps does too."""
+    mesh = random_mesh(WIDTH, HEIGHT, 50)
+    workspace = poisoned_workspace(Device(device), noise(WIDTH, HEIGHT), mesh, CONSTANT)
+    workspace.iterate(0, trust=0.5, regularity=1e-3)
+    np.testing.assert_array_equal(workspace.vertices(), mesh.vertices)
+    workspace.iterate(5, trust=0.5, regularity=1e-3, dead_band=0.6)
+    np.testing.assert_array_equal(workspace.vertices(), mesh.vertices)

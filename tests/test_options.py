@@ -1,0 +1,252 @@
+"""Options: declared once in dataclasses, read for the command line, presets and specifications."""
+
+import dataclasses
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+
+from pipeline.build_job import build_job
+from pipeline.declared import NO_DEFAULT, declared_fields, declared_registry
+from pipeline.job import Job
+from pipeline.member_spec import parse_member
+from pipeline.options import job_options, with_preset
+from pipeline.parser import build_parser
+from pipeline.preset_file import read_preset, shipped_presets
+from stages.flows import FLOWS
+from stages.flows.dis import Dis
+from stages.layouts import LAYOUTS
+from stages.layouts.importance import Importance
+from stages.media import EncodeOptions
+from stages.triangulate import TriangulateOptions
+from warp_kernels.errors import OptionError
+from warp_kernels.styles import STYLES
+
+REGISTRIES = {
+    "stages.layouts:LAYOUTS": LAYOUTS,
+    "stages.flows:FLOWS": FLOWS,
+    "warp_kernels.styles:STYLES": STYLES,
+}
+MEMBERS = [
+    (flag, name, registry)
+    for flag, registry in (("--layout", LAYOUTS), ("--flow", FLOWS), ("--style", STYLES))
+    for name in registry
+]
+NESTED = [
+    Job,
+    TriangulateOptions,
+    EncodeOptions,
+    *(
+        field.default_factory
+        for field in dataclasses.fields(TriangulateOptions)
+        if isinstance(field.default_factory, type)
+    ),
+]
+
+
+def parse(*options: str) -> dict:
+    """Values that the command line gives."""
+    return vars(build_parser().parse_args(["animate", "in.mp4", "-o", "out.mp4", *options]))
+
+
+def write_preset(folder: Path, text: str) -> str:
+    """Write a preset and give its name."""
+    path = folder / "my.toml"
+    path.write_text(text, encoding="utf-8")
+    return str(path)
+
+
+@pytest.mark.parametrize("cls", NESTED, ids=lambda cls: cls.__name__)
+def test_declarations_are_read_as_python_reads_them(cls: type) -> None:
+    """What is read from the source is what the imported dataclass has."""
+    read = declared_fields(cls.__module__, cls.__name__)
+    real = dataclasses.fields(cls)
+    assert [field.name for field in read] == [field.name for field in real]
+    for declared, field in zip(read, real, strict=True):
+        assert dict(declared.metadata) == dict(field.metadata)
+        if field.default is dataclasses.MISSING:
+            assert declared.default is NO_DEFAULT
+        else:
+            assert declared.default == field.default
+        if isinstance(field.default_factory, type):
+            assert declared.factory == field.default_factory.__name__
+
+
+@pytest.mark.parametrize("reference", REGISTRIES)
+def test_registries_are_read_as_python_reads_them(reference: str) -> None:
+    """The members' names and parameters."""
+    read = declared_registry(reference)
+    assert list(read) == list(REGISTRIES[reference])
+    for name, cls in REGISTRIES[reference].items():
+        assert [f.name for f in read[name]] == [f.name for f in dataclasses.fields(cls)]
+
+
+def test_declaration_that_is_not_literal_is_imported(tmp_path: Path, monkeypatch) -> None:
+    """A computed default costs time, not truth."""
+    source = "from dataclasses import dataclass\n@dataclass\nclass A:\n    x: int = 2 ** 4\n"
+    (tmp_path / "computed.py").write_text(source)
+    monkeypatch.setattr("pipeline.declared.ROOT", tmp_path)
+    monkeypatch.syspath_prepend(tmp_path)
+    (field,) = declared_fields("computed", "A")
+    assert (field.name, field.kind, field.default) == ("x", "int", 16)
+
+
+def test_defaults_are_those_of_the_dataclasses() -> None:
+    """The command line without options is the job without arguments."""
+    job = build_job(parse())
+    plain = Job(Path("in.mp4"), Path("out.mp4"))
+    for field in dataclasses.fields(Job):
+        if field.name != "layout":  # holds an array, so it has no equality
+            assert getattr(job, field.name) == getattr(plain, field.name)
+    assert type(job.layout) is type(plain.layout)
+
+
+def test_every_option_has_help_and_its_own_name() -> None:
+    """Flags are unique and explained."""
+    flags = [option.flag for option in job_options()]
+    assert len(set(flags)) == len(flags)
+    assert all(option.help for option in job_options())
+
+
+def test_options_reach_their_dataclass() -> None:
+    """Values of all depths."""
+    options = "--iterations 5 --regularity 0.25 --error 1.5 --crf 30 --size 40x30 --frames 2-8x3"
+    job = build_job(parse(*options.split(), "--independent", "--overwrite", "--end", "0:02"))
+    assert job.triangulate.iterations == 5
+    assert job.triangulate.optimize.regularity == 0.25
+    assert job.triangulate.refine.error == 1.5
+    assert (job.encode.crf, job.encode.overwrite, job.independent) == (30, True, True)
+    assert job.output_size == (40, 30)
+    assert (job.frame_range.first, job.frame_range.last, job.frame_range.step) == (2, 8, 3)
+    assert job.frame_range.end_time == 2
+
+
+@pytest.mark.parametrize(
+    ("options", "size"),
+    [
+        ({}, (640, 361)),
+        ({"scale": 0.5}, (320, 180)),
+        ({"scale": 0.001}, None),
+        ({"scale": 100.0}, None),
+        ({"output_size": (7, 9)}, (7, 9)),
+    ],
+)
+def test_output_size(options: dict, size: tuple[int, int] | None) -> None:
+    """By size or scale; a picture without pixels, or too large, is refused with the numbers."""
+    job = Job(Path("a"), Path("b"), **options)
+    if size is None:
+        with pytest.raises(OptionError, match=r"--scale .* of 640x361: sides must lie between"):
+            job.size_for((640, 361))
+    else:
+        assert job.size_for((640, 361)) == size
+
+
+@pytest.mark.parametrize("name", shipped_presets())
+def test_shipped_presets_make_jobs(name: str) -> None:
+    """By name alone; every value is possible."""
+    build_job(with_preset(parse(), read_preset(name)))
+
+
+def test_preset_gives_any_option(tmp_path: Path) -> None:
+    """Numbers, texts, switches and lists, with dashes or underscores."""
+    preset = write_preset(
+        tmp_path,
+        'triangles = 90\nframe_iterations = 3\nscale = 2\nflow = "none"\n'
+        'no-audio = true\nindependent = false\nstyle = ["flat", "edges:width=3"]\nstart = 1.5\n',
+    )
+    job = build_job(with_preset(parse(), read_preset(preset)))
+    assert job.triangulate.refine.triangles == 90
+    assert job.triangulate.frame_iterations == 3
+    assert job.scale == 2.0
+    assert isinstance(job.flow, FLOWS["none"])
+    assert (job.encode.audio, job.independent) == (False, False)
+    assert job.styles == (STYLES["flat"](), STYLES["edges"](width=3.0))
+    assert job.frame_range.start_time == 1.5
+
+
+def test_command_line_beats_preset(tmp_path: Path) -> None:
+    """Given values win, even the default's own; a size drives a preset's scale out."""
+    preset = read_preset(write_preset(tmp_path, 'triangles = 90\nscale = 2\nstyle = "edges"'))
+    job = build_job(with_preset(parse("--triangles", "1500", "--size", "8x6"), preset))
+    assert job.triangulate.refine.triangles == 1500
+    assert (job.output_size, job.scale) == ((8, 6), None)
+    assert job.styles == (STYLES["edges"](),)
+    styled = build_job(with_preset(parse("--style", "flat"), preset))
+    assert styled.styles == (STYLES["flat"](),)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("trianglez = 3", ["trianglez", "triangles"]),
+        ("[more]\ntriangles = 3", ["more"]),
+        ("triangles = 3.5", ["3.5", "whole number"]),
+        ("triangles = true", ["True", "number"]),
+        ("independent = 1", ["independent", "true or false"]),
+        ("style = [[1]]", ["style"]),
+        ("size = 'big'", ["big", "WxH"]),
+        ("color = 'pink'", ["pink", "constant"]),
+        ("scale = nan", ["nan"]),
+        ("triangles = ", ["TOML"]),
+        ("scale = 2\nsize = '8x6'", ["--size", "--scale"]),
+        ("preset = 'fine'", ["preset"]),
+    ],
+)
+def test_bad_preset_is_an_error(text: str, words: list[str], tmp_path: Path) -> None:
+    """One line that names the key, the value and what is allowed."""
+    with pytest.raises(OptionError) as caught:
+        build_job(with_preset(parse(), read_preset(write_preset(tmp_path, text))))
+    assert "\n" not in str(caught.value)
+    for word in words:
+        assert word in str(caught.value)
+
+
+@pytest.mark.parametrize(("flag", "name", "registry"), MEMBERS, ids=[m[1] for m in MEMBERS])
+def test_member_by_name_and_by_its_own_defaults(flag: str, name: str, registry: dict) -> None:
+    """The name alone gives the defaults; writing every default out gives the same."""
+    plain = registry[name]()
+    assert type(parse_member(flag, name, registry)) is type(plain)
+    pairs = [
+        f"{field.name}={getattr(plain, field.name)}"
+        for field in dataclasses.fields(plain)
+        if getattr(plain, field.name) is not None
+    ]
+    spelled = parse_member(flag, ":".join([name, ",".join(pairs)]), registry)
+    for field in dataclasses.fields(plain):
+        assert getattr(spelled, field.name) == getattr(plain, field.name)
+
+
+@pytest.mark.parametrize(("flag", "name", "registry"), MEMBERS, ids=[m[1] for m in MEMBERS])
+def test_unknown_parameter_lists_what_is_allowed(flag: str, name: str, registry: dict) -> None:
+    """The message names the parameter and all that exist."""
+    with pytest.raises(OptionError) as caught:
+        parse_member(flag, f"{name}:nonsense=1", registry)
+    assert "'nonsense'" in str(caught.value)
+    for field in dataclasses.fields(registry[name]):
+        assert field.name in str(caught.value)
+
+
+def test_message_of_a_member_is_not_doubled() -> None:
+    """A member that names itself in its error does so once."""
+    with pytest.raises(OptionError) as caught:
+        parse_member("--style", "edges:width=99", STYLES)
+    assert str(caught.value).count("edges:width=99") == 1
+
+
+def test_parameters_are_typed() -> None:
+    """Whole numbers, texts; spaces and dashes do not matter."""
+    flow = parse_member("--flow", "dis:preset=fast, lines=240", FLOWS)
+    assert flow == Dis(lines=240, preset="fast")
+    assert parse_member("--layout", "importance:even-share=0.5", LAYOUTS).even_share == 0.5
+
+
+@pytest.mark.parametrize("name", ["map.png", "my map, old=1.png"])
+def test_importance_map_is_read_as_grey(name: str, tmp_path: Path) -> None:
+    """White is 1; the name may hold what separates parameters."""
+    picture = np.zeros((4, 6, 3), np.uint8)
+    picture[:, 3:] = 255
+    cv2.imwrite(str(tmp_path / name), picture)
+    layout = parse_member("--layout", f"importance:{tmp_path / name}", LAYOUTS)
+    assert isinstance(layout, Importance)
+    np.testing.assert_allclose(layout.importance_map, picture[..., 0] / 255.0, atol=1e-12)

@@ -1,0 +1,120 @@
+"""Progress: which member is picked, what each prints and where."""
+
+import io
+import json
+import sys
+from pathlib import Path
+
+import pytest
+
+from pipeline.progress import (
+    PROGRESS,
+    BarProgress,
+    JsonProgress,
+    PlainProgress,
+    Progress,
+    Summary,
+    open_progress,
+)
+
+SUMMARY = Summary(frames=3, seconds=1.5, mean_rmse=20.25, output=Path("out.mp4"))
+
+
+class Terminal(io.StringIO):
+    """A stream that says it is a terminal."""
+
+    def isatty(self) -> bool:
+        """Say so."""
+        return True
+
+
+def run(name: str, *, total: int | None = 3, verbose: bool = False) -> None:
+    """Three frames, a note, a warning and the end."""
+    with open_progress(name, verbose=verbose) as progress:
+        for done in (1, 2, 3):
+            progress.frame(done, total, 700 + done, 20.0 + done)
+        progress.note("taken as bt709")
+        progress.warn("breaks off")
+        progress.finish(SUMMARY)
+
+
+def test_auto_is_a_bar_only_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A log file gets lines."""
+    monkeypatch.setattr(sys, "stderr", Terminal())
+    assert type(open_progress("auto")) is BarProgress
+    monkeypatch.setattr(sys, "stderr", io.StringIO())
+    assert type(open_progress("auto")) is PlainProgress
+
+
+@pytest.mark.parametrize("name", PROGRESS)
+@pytest.mark.parametrize("total", [3, None, 2, 90])
+def test_every_member_survives_any_total(name: str, total: int | None, capsys) -> None:
+    """The number of frames may be unknown or wrong; warnings are told in any case."""
+    run(name, total=total)
+    assert "warning: breaks off" in capsys.readouterr().err
+
+
+def test_bar_shows_figures_and_leaves_the_summary(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Frames, triangles and rmse; the last line is the summary."""
+    monkeypatch.setattr(sys, "stderr", Terminal())
+    run("bar")
+    text = sys.stderr.getvalue()
+    assert "3/3" in text
+    assert "703 triangles, rmse 23.00" in text
+    assert text.rstrip().splitlines()[-1] == str(SUMMARY)
+
+
+def test_bar_is_closed_when_a_job_fails(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The error line starts on a line of its own."""
+    monkeypatch.setattr(sys, "stderr", Terminal())
+    progress = open_progress("bar")
+    progress.frame(1, 9, 700, 20.0)
+    with pytest.raises(ValueError, match="full"), progress:
+        raise ValueError("disk full")
+    assert sys.stderr.getvalue().endswith("\n")
+
+
+def test_plain_lines_are_few_but_tell_the_last(capsys) -> None:
+    """The first frame, then one every few seconds, the last one and the summary."""
+    with open_progress("plain") as progress:
+        for done in range(1, 101):
+            progress.frame(done, 100, 700, 20.0)
+        progress.finish(SUMMARY)
+    captured = capsys.readouterr()
+    lines = captured.err.splitlines()
+    assert captured.out == ""
+    assert lines[0].startswith("frame 1/100 ")
+    assert lines[-2].startswith("frame 100/100 ")
+    assert "700 triangles  rmse 20.00" in lines[-2]
+    assert lines[-1] == "3 frames in 1.5 s (2.0 fps), mean rmse 20.25: out.mp4"
+    assert len(lines) <= 6
+
+
+def test_json_lines_hold_every_frame(capsys) -> None:
+    """One object a line on standard output, nothing for people among them."""
+    run("json")
+    events = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+    frames = [event for event in events if event["event"] == "frame"]
+    assert [frame["done"] for frame in frames] == [1, 2, 3]
+    assert [frame["triangles"] for frame in frames] == [701, 702, 703]
+    assert frames[0]["total"] == 3
+    assert frames[2]["rmse"] == 23.0
+    assert events[-1]["event"] == "done"
+    assert events[-1]["mean_rmse"] == 20.25
+    assert events[-1]["output"] == "out.mp4"
+    assert isinstance(open_progress("json"), JsonProgress)
+
+
+def test_none_is_silent_about_progress(capsys) -> None:
+    """No frames, no summary; notes only when asked for."""
+    run("none")
+    assert capsys.readouterr().err == "trimotion: warning: breaks off\n"
+    run("none", verbose=True)
+    assert "note: taken as bt709" in capsys.readouterr().err
+    assert type(open_progress("none")) is Progress
+
+
+def test_summary_of_nothing_divides_by_nothing() -> None:
+    """A job of no time has no frame rate."""
+    assert Summary(1, 0.0, 0.0, Path("a.png")).fps == 0.0
+    assert str(Summary(1, 1.0, 0.0, Path("a.png"))).startswith("1 frame in")

@@ -1,0 +1,294 @@
+"""What every possible flip, collapse and split would do to the energy: all candidates at once."""
+
+from functools import lru_cache
+from typing import Any
+
+import warp as wp
+
+from warp_kernels.color_model import ColorModel
+from warp_kernels.descend import smallest_height
+from warp_kernels.device import Device, Phase
+from warp_kernels.moments import moment_types
+from warp_kernels.triangle_energy import triangle_energy
+
+wp.set_module_options({"enable_backward": False, "fuse_fp": False})
+
+IMPOSSIBLE = 1.0e30
+"""Cost of a change that would turn a triangle inside out or make it too thin."""
+
+
+@wp.func
+def signed_height(a: wp.vec2d, b: wp.vec2d, c: wp.vec2d) -> wp.float64:
+    """Smallest height [px], negative where the triangle is turned inside out."""
+    doubled = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+    return wp.sign(doubled) * smallest_height(a, b, c)
+
+
+@wp.func
+def corner_after(half_edge: int) -> int:
+    """The next half-edge of the same triangle."""
+    return half_edge - half_edge % 3 + (half_edge + 1) % 3
+
+
+@lru_cache(maxsize=None)
+def _flip_kernel(model: ColorModel) -> Any:
+    powers_type = moment_types(model).powers
+    energy = triangle_energy(model)
+
+    @wp.kernel(enable_backward=False, module="unique")
+    def flip_gains(
+        begin: int,
+        # In:
+        half_edges: wp.array(dtype=int),
+        twins: wp.array(dtype=int),
+        corners: wp.array(dtype=int),
+        vertices: wp.array(dtype=wp.vec2d),
+        energies: wp.array(dtype=wp.float64),
+        table: wp.array(dtype=wp.vec4i),
+        powers: wp.array(dtype=powers_type),
+        height: int,
+        least_height: wp.float64,
+        # Out:
+        gains_out: wp.array(dtype=wp.float64),
+    ):
+        """What the energy loses if one edge is flipped."""
+        number = begin + wp.tid()
+        side = half_edges[number]
+        twin = twins[side]
+        gains_out[number] = -wp.float64(wp.static(IMPOSSIBLE))
+        if twin >= 0:
+            a = vertices[corners[side]]
+            b = vertices[corners[twin]]
+            c = vertices[corners[corner_after(corner_after(side))]]
+            d = vertices[corners[corner_after(corner_after(twin))]]
+            lower = wp.min(signed_height(a, d, c), signed_height(b, c, d))
+            if lower >= least_height:
+                gains_out[number] = (
+                    energies[side / 3]
+                    + energies[twin / 3]
+                    - energy(a, d, c, table, powers, height)
+                    - energy(b, c, d, table, powers, height)
+                )
+
+    return flip_gains
+
+
+@lru_cache(maxsize=None)
+def _collapse_kernel(model: ColorModel) -> Any:
+    powers_type = moment_types(model).powers
+    energy = triangle_energy(model)
+
+    @wp.kernel(enable_backward=False, module="unique")
+    def collapse_costs(
+        begin: int,
+        # In:
+        half_edges: wp.array(dtype=int),
+        corners: wp.array(dtype=int),
+        fan_offsets: wp.array(dtype=int),
+        fan_corners: wp.array(dtype=int),
+        vertices: wp.array(dtype=wp.vec2d),
+        energies: wp.array(dtype=wp.float64),
+        table: wp.array(dtype=wp.vec4i),
+        powers: wp.array(dtype=powers_type),
+        height: int,
+        least_height: wp.float64,
+        # Out:
+        costs_out: wp.array(dtype=wp.float64),
+    ):
+        """What the energy gains if the origin of one half-edge moves into its destination."""
+        number = begin + wp.tid()
+        side = half_edges[number]
+        origin = corners[side]
+        goal = corners[corner_after(side)]
+        cost = wp.float64(0.0)
+        for n in range(fan_offsets[origin], fan_offsets[origin + 1]):
+            at = fan_corners[n]
+            cost -= energies[at / 3]
+            second = corners[corner_after(at)]
+            third = corners[corner_after(corner_after(at))]
+            if second != goal and third != goal:
+                a = vertices[goal]
+                b = vertices[second]
+                c = vertices[third]
+                if signed_height(a, b, c) < least_height:
+                    cost += wp.float64(wp.static(IMPOSSIBLE))
+                elif cost < wp.float64(wp.static(0.5 * IMPOSSIBLE)):
+                    cost += energy(a, b, c, table, powers, height)
+        costs_out[number] = cost
+
+    return collapse_costs
+
+
+@lru_cache(maxsize=None)
+def _split_kernel(model: ColorModel) -> Any:
+    powers_type = moment_types(model).powers
+    energy = triangle_energy(model)
+
+    @wp.kernel(enable_backward=False, module="unique")
+    def split_gains(
+        begin: int,
+        # In:
+        half_edges: wp.array(dtype=int),
+        twins: wp.array(dtype=int),
+        corners: wp.array(dtype=int),
+        vertices: wp.array(dtype=wp.vec2d),
+        energies: wp.array(dtype=wp.float64),
+        table: wp.array(dtype=wp.vec4i),
+        powers: wp.array(dtype=powers_type),
+        height: int,
+        least_height: wp.float64,
+        share: wp.float64,
+        # Out:
+        gains_out: wp.array(dtype=wp.float64),
+    ):
+        """What the energy loses if one edge is split at a point between its ends."""
+        number = begin + wp.tid()
+        side = half_edges[number]
+        twin = twins[side]
+        a = vertices[corners[side]]
+        b = vertices[corners[corner_after(side)]]
+        c = vertices[corners[corner_after(corner_after(side))]]
+        m = a + share * (b - a)
+        gain = energies[side / 3]
+        lower = wp.min(signed_height(a, m, c), signed_height(m, b, c))
+        if twin >= 0:
+            d = vertices[corners[corner_after(corner_after(twin))]]
+            gain += energies[twin / 3]
+            lower = wp.min(lower, wp.min(signed_height(m, a, d), signed_height(b, m, d)))
+            if lower >= least_height:
+                gain -= energy(m, a, d, table, powers, height)
+                gain -= energy(b, m, d, table, powers, height)
+        if lower >= least_height:
+            gain -= energy(a, m, c, table, powers, height)
+            gain -= energy(m, b, c, table, powers, height)
+        else:
+            gain = -wp.float64(wp.static(IMPOSSIBLE))
+        gains_out[number] = gain
+
+    return split_gains
+
+
+def record_flip_gains(
+    device: Device,
+    model: ColorModel,
+    *,
+    half_edges: wp.array,
+    twins: wp.array,
+    corners: wp.array,
+    vertices: wp.array,
+    energies: wp.array,
+    table: wp.array,
+    powers: wp.array,
+    height: int,
+    least_height: float,
+    gains_out: wp.array,
+) -> Phase:
+    """Prepare the launch that measures every flip.
+
+    Args:
+        device: Where to run.
+        model: The polynomial colour.
+        half_edges: The edges to look at, by one of their half-edges, [N].
+        twins: The half-edge that runs the other way, -1 on the border, [3 T].
+        corners: Vertex number of every half-edge's origin, [3 T].
+        vertices: Positions [px], [V] vec2d.
+        energies: E(T) as it stands [code value^2 px], [T].
+        table: Prefix sums of the image, see `image_tables`.
+        powers: Sums of x^a left of each column, [W + 1] vectors.
+        height: Rows of the image [px].
+        least_height: Smallest height that the new triangles may have [px].
+        gains_out: Energy saved [code value^2 px], -IMPOSSIBLE where there is no flip, [N].
+
+    Deviation: the paper flips for the Delaunay property alone (Sec. 3.4).
+    """
+    inputs = [
+        half_edges, twins, corners, vertices, energies, table, powers, height,
+        wp.float64(least_height),
+    ]  # fmt: skip
+    return device.record(_flip_kernel(model), inputs, [gains_out])
+
+
+def record_collapse_costs(
+    device: Device,
+    model: ColorModel,
+    *,
+    half_edges: wp.array,
+    corners: wp.array,
+    fan_offsets: wp.array,
+    fan_corners: wp.array,
+    vertices: wp.array,
+    energies: wp.array,
+    table: wp.array,
+    powers: wp.array,
+    height: int,
+    least_height: float,
+    costs_out: wp.array,
+) -> Phase:
+    """Prepare the launch that measures every half-edge collapse.
+
+    Args:
+        device: Where to run.
+        model: The polynomial colour.
+        half_edges: Half-edges whose origin would move into their destination, [N].
+        corners: Vertex number of every half-edge's origin, [3 T].
+        fan_offsets: Where each vertex's corners begin in `fan_corners`, [V + 1].
+        fan_corners: Corner numbers 3 t + c around each vertex, [3 T].
+        vertices: Positions [px], [V] vec2d.
+        energies: E(T) as it stands [code value^2 px], [T].
+        table: Prefix sums of the image, see `image_tables`.
+        powers: Sums of x^a left of each column, [W + 1] vectors.
+        height: Rows of the image [px].
+        least_height: Smallest height that the changed triangles may have [px].
+        costs_out: Energy added [code value^2 px], IMPOSSIBLE or more where a triangle would fold,
+            [N].
+
+    Deviation: the paper collapses triangles of small area on their shortest edge (Sec. 3.4).
+    """
+    inputs = [
+        half_edges, corners, fan_offsets, fan_corners, vertices, energies, table, powers, height,
+        wp.float64(least_height),
+    ]  # fmt: skip
+    return device.record(_collapse_kernel(model), inputs, [costs_out])
+
+
+def record_split_gains(
+    device: Device,
+    model: ColorModel,
+    *,
+    half_edges: wp.array,
+    twins: wp.array,
+    corners: wp.array,
+    vertices: wp.array,
+    energies: wp.array,
+    table: wp.array,
+    powers: wp.array,
+    height: int,
+    least_height: float,
+    share: float,
+    gains_out: wp.array,
+) -> Phase:
+    """Prepare the launch that measures the split of every edge at one place.
+
+    Args:
+        device: Where to run.
+        model: The polynomial colour.
+        half_edges: The edges to look at, by one of their half-edges, [N].
+        twins: The half-edge that runs the other way, -1 on the border, [3 T].
+        corners: Vertex number of every half-edge's origin, [3 T].
+        vertices: Positions [px], [V] vec2d.
+        energies: E(T) as it stands [code value^2 px], [T].
+        table: Prefix sums of the image, see `image_tables`.
+        powers: Sums of x^a left of each column, [W + 1] vectors.
+        height: Rows of the image [px].
+        least_height: Smallest height that the new triangles may have [px].
+        share: Where between origin (0) and destination (1) of the half-edge.
+        gains_out: Energy saved [code value^2 px], -IMPOSSIBLE where a triangle would be too thin,
+            [N].
+
+    Deviation: the paper splits the triangles of the largest error at their centroids (Sec. 3.4).
+    """
+    inputs = [
+        half_edges, twins, corners, vertices, energies, table, powers, height,
+        wp.float64(least_height), wp.float64(share),
+    ]  # fmt: skip
+    return device.record(_split_kernel(model), inputs, [gains_out])

@@ -1,0 +1,64 @@
+"""The error of a triangle that is not in the mesh: what a change of topology would leave."""
+
+from functools import lru_cache
+from typing import Any
+
+import warp as wp
+
+from warp_kernels.color_model import ColorModel
+from warp_kernels.moments import area_sums_left_of, color_sums_left_of, moment_types
+from warp_kernels.raster import carry_of, to_fixed, walk_edge
+from warp_kernels.solve import fit_moments
+
+wp.set_module_options({"enable_backward": False, "fuse_fp": False})
+
+
+@lru_cache(maxsize=None)
+def triangle_energy(model: ColorModel) -> Any:
+    """A wp.func: E of the triangle a, b, c [px] from nine numbers and the picture's tables."""
+    types = moment_types(model)
+    color_type, area_type, powers_type = types.color, types.area, types.powers
+    color_sums = color_sums_left_of(model)
+    area_sums = area_sums_left_of(model)
+    depth = model.table_depth
+    fit = fit_moments(model)
+
+    @wp.func
+    def energy(
+        a: wp.vec2d,
+        b: wp.vec2d,
+        c: wp.vec2d,
+        table: wp.array(dtype=wp.vec4i),
+        powers: wp.array(dtype=powers_type),
+        height: int,
+    ) -> wp.float64:
+        """Sum along the three edges, then solve."""
+        width = powers.shape[0] - 1
+        color = color_type()
+        area = area_type()
+        for side in range(3):
+            tail = a
+            head = b
+            if side == 1:
+                tail = b
+                head = c
+            if side == 2:
+                tail = c
+                head = a
+            walk = walk_edge(to_fixed(tail), to_fixed(head), height)
+            sign = wp.int64(walk.sign)
+            row = walk.row_begin
+            while row < walk.row_end:
+                column = wp.clamp(walk.column, 0, width)
+                y = wp.int64(row - height / 2)
+                entry = (row * (width + 1) + column) * wp.static(depth)
+                color += sign * color_sums(table, entry, y)
+                area += sign * area_sums(powers[column], y)
+                walk.remainder += walk.remainder_step
+                carry = carry_of(walk.remainder, walk.denominator)
+                walk.remainder -= carry * walk.denominator
+                walk.column += walk.column_step + carry
+                row += 1
+        return fit(color, area).energy
+
+    return energy
