@@ -12,7 +12,7 @@ from pipeline.progress import Progress
 from pipeline.shots import ShotFrame, with_shots
 from pipeline.stream import Behind, ahead
 from stages.advect import advect
-from stages.flows import Flow, FlowField
+from stages.flows import FlowField
 from stages.frame import Frame
 from stages.media import check_output, open_decoder, open_encoder
 from stages.media.encode import Encoder
@@ -103,12 +103,12 @@ def animate(job: Job, progress: Progress) -> Animated:
 
 def _with_motion(shot_frames: Iterable[ShotFrame], job: Job) -> Iterator[Step]:
     """Estimate the motion between the frames of a shot."""
-    flow: Flow = job.flow
     before: Frame | None = None
     for shot_frame in shot_frames:
         frame = shot_frame.frame
-        starts = before is None or shot_frame.opens_shot or job.independent
-        motion = None if starts else flow.estimate(before.pixels, frame.pixels)  # type: ignore[union-attr]
+        motion: FlowField | None = None
+        if before is not None and not shot_frame.opens_shot and not job.independent:
+            motion = job.flow.estimate(before.pixels, frame.pixels)
         yield Step(frame, motion)
         before = frame
 

@@ -18,7 +18,8 @@ LEAST = 12.0
 RATIO = 3.0
 """A cut changes the picture this many times more than the steps around it do."""
 LASTING = 0.6
-"""Part of the change that must still be there two frames later: a flash goes away again."""
+"""Part of the change that must last: still be there two frames later, as a flash goes away again,
+and be there already two frames before, as the picture after a flash is the one before it."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -44,7 +45,7 @@ def read_cuts(path: Path) -> frozenset[int]:
         raise MediaError(path, f"the list of cuts cannot be read ({error})", remedy) from error
     try:
         numbers = json.loads(text) if text.lstrip().startswith("[") else text.split()
-        cuts = frozenset(int(number) for number in numbers)
+        cuts = frozenset(int(str(number)) for number in numbers)  # 2.5 and true are no frames
     except (ValueError, TypeError) as error:
         raise MediaError(path, f"is no list of cuts ({error})", remedy) from error
     if min(cuts, default=0) < 0:
@@ -127,4 +128,7 @@ class _Detector:
         if around and value < RATIO * sum(around) / len(around):
             return False
         later = known[at : at + AHEAD + 1]
-        return all(change(known[at - 1], after) >= LASTING * value for after in later)
+        earlier = known[max(0, at - AHEAD - 1) : at]
+        steps_over = [change(known[at - 1], after) for after in later]
+        steps_over += [change(before, known[at]) for before in earlier]
+        return min(steps_over) >= LASTING * value

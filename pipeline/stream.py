@@ -1,6 +1,6 @@
 """Generators that run ahead and a consumer that runs behind: the only threads of a job."""
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable
 from contextlib import suppress
 from dataclasses import dataclass
 from queue import Empty, Full, Queue
@@ -21,7 +21,7 @@ class _End:
     error: BaseException | None
 
 
-def ahead(items: Iterable[Item], depth: int) -> Iterator[Item]:
+def ahead(items: Iterable[Item], depth: int) -> Generator[Item, None, None]:
     """Run an iterable in a thread of its own, up to `depth` items ahead.
 
     An exception of the iterable is raised here, in its place. Closing this generator ends the
@@ -35,6 +35,7 @@ def ahead(items: Iterable[Item], depth: int) -> Iterator[Item]:
     stopped = Event()
 
     def feed() -> None:
+        """Fill the queue until the source or the consumer ends."""
         error: BaseException | None = None
         try:
             for item in items:

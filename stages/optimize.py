@@ -78,7 +78,5 @@ def optimize(
     Source: Lawonn & Guenther, Stylized Image Triangulation (2018), Sec. 3.2.
     """
     trust = options.trust_region if trust_region is None else trust_region
-    workspace.iterate(
-        iterations, trust=trust, regularity=options.regularity, dead_band=dead_band
-    )
+    workspace.iterate(iterations, trust=trust, regularity=options.regularity, dead_band=dead_band)
     return mesh.moved(workspace.vertices())

@@ -33,9 +33,7 @@ class RefineOptions:
 
     def __post_init__(self) -> None:
         if self.triangles < 2:
-            raise OptionError(
-                f"--triangles {self.triangles}: a picture has two or more; try 1500"
-            )
+            raise OptionError(f"--triangles {self.triangles}: a picture has two or more; try 1500")
         if self.error is not None and not self.error > 0:
             raise OptionError(f"--error {self.error:g}: must be above 0; try 0.5")
 

@@ -14,6 +14,7 @@ Coordinates in moments count from the middle of the image, which keeps the sums 
 from dataclasses import dataclass
 from functools import cached_property
 
+
 @dataclass(frozen=True)
 class ColorModel:
     """A polynomial colour per triangle.

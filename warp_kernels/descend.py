@@ -1,8 +1,5 @@
 """One step of every vertex: gather dE/dv, add the other terms, move within the trust region."""
 
-from functools import lru_cache
-from typing import Any
-
 import warp as wp
 
 from warp_kernels.device import Device, Phase
@@ -18,6 +15,12 @@ LEAST_HEIGHT = 0.05
 GROW = 1.2
 SHRINK = 0.5
 """Change of a vertex's own trust region when a step keeps or reverses its direction."""
+
+_HEIGHT_FRACTION = wp.constant(HEIGHT_FRACTION)
+_LEAST_HEIGHT = wp.constant(LEAST_HEIGHT)
+_GROW = wp.constant(GROW)
+_SHRINK = wp.constant(SHRINK)
+_THIRD = wp.constant(1.0 / 3.0)  # a triangle is visited from three corners: Eq. 7
 
 
 @wp.func
@@ -41,87 +44,113 @@ def newton_step(slope: wp.float64, curvature: wp.float64, reach: wp.float64) -> 
     return -wp.sign(slope) * reach
 
 
-@lru_cache(maxsize=None)
-def _descend_kernel() -> Any:
-    @wp.kernel(enable_backward=False, module="unique")
-    def descend(
-        begin: int,
-        # In:
-        vertices: wp.array(dtype=wp.vec2d),
-        triangles: wp.array(dtype=wp.vec3i),
-        energies: wp.array2d(dtype=wp.float64),
-        fan_offsets: wp.array(dtype=int),
-        fan_corners: wp.array(dtype=int),
-        freedom: wp.array(dtype=wp.vec2d),
-        anchors: wp.array(dtype=wp.vec3d),
-        controls: wp.array(dtype=wp.float64),
-        # In and out:
-        memory_out: wp.array(dtype=wp.vec4d),
-        # Out:
-        vertices_out: wp.array(dtype=wp.vec2d),
-    ):
-        vertex = begin + wp.tid()
-        trust = controls[0]
-        regularity = controls[1]
-        dead_band = controls[2]
-        here = vertices[vertex]
-        slope = wp.vec2d()
-        curvature = wp.vec2d()
-        ring = wp.vec2d()
-        height = wp.float64(1.0e30)
-        first = fan_offsets[vertex]
-        last = fan_offsets[vertex + 1]
-        for n in range(first, last):
-            triangle = fan_corners[n] / 3
-            corner = fan_corners[n] - 3 * triangle
-            variant = 1 + 4 * corner
-            still = energies[triangle, 0]
-            for axis in range(2):
-                plus = energies[triangle, variant + 2 * axis]
-                minus = energies[triangle, variant + 2 * axis + 1]
-                slope[axis] += wp.float64(0.5) * (plus - minus)
-                curvature[axis] += plus + minus - wp.float64(2.0) * still
-            corners = triangles[triangle]
-            height = wp.min(
-                height,
-                smallest_height(
-                    vertices[corners[0]], vertices[corners[1]], vertices[corners[2]]
-                ),
-            )
-            ring += vertices[corners[(corner + 1) % 3]] + vertices[corners[(corner + 2) % 3]]
-        # every interior neighbour was met twice, so the mean over the ring is over 2 n
-        to_ring = here - ring / wp.float64(2 * (last - first))
-        anchor = anchors[vertex]
-        pull = anchor[2]
-        third = wp.float64(1.0 / 3.0)
-        memory = memory_out[vertex]
-        step = wp.vec2d()
-        for axis in range(2):
-            g = third * slope[axis] + regularity * to_ring[axis]
-            g += pull * (here[axis] - anchor[axis])
-            h = third * curvature[axis] + regularity + pull
-            reach = wp.min(memory[axis], trust)
-            s = newton_step(g, h, reach) * freedom[vertex][axis]
-            if s * memory[axis + 2] < wp.float64(0.0):
-                reach = reach * wp.float64(wp.static(SHRINK))
-                s = newton_step(g, h, reach) * freedom[vertex][axis]
-            else:
-                reach = reach * wp.float64(wp.static(GROW))
-            memory[axis] = reach
-            memory[axis + 2] = s
-            step[axis] = s
-        floor = wp.float64(wp.static(LEAST_HEIGHT))
-        spare = wp.max(height - floor, wp.float64(0.1) * height)
-        limit = wp.min(trust, wp.float64(wp.static(HEIGHT_FRACTION)) * spare)
-        length = wp.length(step)
-        if length < dead_band:
-            step = wp.vec2d()
-        if length > limit:
-            step = step * (limit / length)
-        memory_out[vertex] = memory
-        vertices_out[vertex] = here + step
+@wp.struct
+class Surroundings:
+    """What a vertex feels of the triangles around it."""
 
-    return descend
+    slope: wp.vec2d
+    """Sum of dE(T)/dv [code value^2]."""
+    curvature: wp.vec2d
+    """Sum of the second differences of E(T) per axis [code value^2 / px]."""
+    ring: wp.vec2d
+    """Mean position of the neighbours [px]."""
+    height: wp.float64
+    """Smallest height of a triangle around [px]."""
+
+
+@wp.func
+def look_around(
+    vertex: int,
+    vertices: wp.array(dtype=wp.vec2d),
+    triangles: wp.array(dtype=wp.vec3i),
+    energies: wp.array2d(dtype=wp.float64),
+    fan_offsets: wp.array(dtype=int),
+    fan_corners: wp.array(dtype=int),
+) -> Surroundings:
+    """Gather over a vertex's corners, in a fixed order."""
+    around = Surroundings()
+    around.height = wp.float64(1.0e30)
+    first = fan_offsets[vertex]
+    last = fan_offsets[vertex + 1]
+    for n in range(first, last):
+        triangle = fan_corners[n] / 3
+        corner = fan_corners[n] - 3 * triangle
+        variant = 1 + 4 * corner
+        still = energies[triangle, 0]
+        for axis in range(2):
+            plus = energies[triangle, variant + 2 * axis]
+            minus = energies[triangle, variant + 2 * axis + 1]
+            around.slope[axis] += wp.float64(0.5) * (plus - minus)
+            around.curvature[axis] += plus + minus - wp.float64(2.0) * still
+        corners = triangles[triangle]
+        a = vertices[corners[0]]
+        b = vertices[corners[1]]
+        c = vertices[corners[2]]
+        around.height = wp.min(around.height, smallest_height(a, b, c))
+        around.ring += vertices[corners[(corner + 1) % 3]] + vertices[corners[(corner + 2) % 3]]
+    # every inner neighbour was met twice; at the border the two outermost count half
+    around.ring = around.ring / wp.float64(2 * (last - first))
+    return around
+
+
+@wp.func
+def limited(
+    step: wp.vec2d, trust: wp.float64, height: wp.float64, dead_band: wp.float64
+) -> wp.vec2d:
+    """A step no longer than trust and heights allow, and none below the dead band."""
+    spare = wp.max(height - wp.float64(_LEAST_HEIGHT), wp.float64(0.1) * height)
+    limit = wp.min(trust, wp.float64(_HEIGHT_FRACTION) * spare)
+    length = wp.length(step)
+    if length < dead_band:
+        return wp.vec2d()
+    if length > limit:
+        return step * (limit / length)
+    return step
+
+
+@wp.kernel(enable_backward=False)
+def descend(
+    begin: int,
+    # In:
+    vertices: wp.array(dtype=wp.vec2d),
+    triangles: wp.array(dtype=wp.vec3i),
+    energies: wp.array2d(dtype=wp.float64),
+    fan_offsets: wp.array(dtype=int),
+    fan_corners: wp.array(dtype=int),
+    freedom: wp.array(dtype=wp.vec2d),
+    anchors: wp.array(dtype=wp.vec3d),
+    controls: wp.array(dtype=wp.float64),
+    # In and out:
+    memory_out: wp.array(dtype=wp.vec4d),
+    # Out:
+    vertices_out: wp.array(dtype=wp.vec2d),
+):
+    """Move one vertex once."""
+    vertex = begin + wp.tid()
+    trust = controls[0]
+    regularity = controls[1]
+    here = vertices[vertex]
+    anchor = anchors[vertex]
+    around = look_around(vertex, vertices, triangles, energies, fan_offsets, fan_corners)
+    to_ring = here - around.ring
+    memory = memory_out[vertex]
+    step = wp.vec2d()
+    for axis in range(2):
+        g = around.slope[axis] * wp.float64(_THIRD) + regularity * to_ring[axis]
+        g += anchor[2] * (here[axis] - anchor[axis])
+        h = around.curvature[axis] * wp.float64(_THIRD) + regularity + anchor[2]
+        reach = wp.min(memory[axis], trust)
+        s = newton_step(g, h, reach) * freedom[vertex][axis]
+        if s * memory[axis + 2] < wp.float64(0.0):
+            reach = reach * wp.float64(_SHRINK)
+            s = newton_step(g, h, reach) * freedom[vertex][axis]
+        else:
+            reach = reach * wp.float64(_GROW)
+        memory[axis] = reach
+        memory[axis + 2] = s
+        step[axis] = s
+    memory_out[vertex] = memory
+    vertices_out[vertex] = here + limited(step, trust, around.height, controls[2])
 
 
 def record_descent(
@@ -164,4 +193,4 @@ def record_descent(
     inputs = [
         vertices, triangles, energies, fan_offsets, fan_corners, freedom, anchors, controls,
     ]  # fmt: skip
-    return device.record(_descend_kernel(), inputs, [memory_out, vertices_out])
+    return device.record(descend, inputs, [memory_out, vertices_out])

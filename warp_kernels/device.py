@@ -8,6 +8,7 @@ Every kernel's first parameter is `begin`, the first element of its part.
 """
 
 import os
+import sys
 from collections.abc import Sequence
 from queue import SimpleQueue
 from threading import Lock, Semaphore, Thread
@@ -61,7 +62,7 @@ class Device:
     """
 
     def __init__(self, name: str = "auto", threads: int = 0) -> None:
-        wp.init()
+        _start_warp()
         if name == "auto":
             name = "cuda:0" if wp.get_cuda_device_count() else "cpu"
         self.name = name
@@ -155,6 +156,7 @@ class _Team:
             self._done.release()
 
     def run(self, phases: Sequence[Phase], times: int) -> None:
+        """Run phases one after the other, the parts of each at once."""
         with self._lock:
             for _ in range(times):
                 for phase in phases:
@@ -171,6 +173,24 @@ class _Team:
         phase.parts[0].launch()
         for _ in busy:
             self._done.acquire()
+
+
+def _start_warp() -> None:
+    """Start Warp without a word: a command's output is its own.
+
+    Its native part reports a missing CUDA driver on the error stream itself, whatever the log
+    level, so that stream is put aside meanwhile.
+    """
+    wp.config.log_level = wp.LOG_ERROR
+    sys.stderr.flush()
+    kept = os.dup(2)
+    try:
+        with open(os.devnull, "wb") as nowhere:
+            os.dup2(nowhere.fileno(), 2)
+        wp.init()
+    finally:
+        os.dup2(kept, 2)
+        os.close(kept)
 
 
 def _warp_device(name: str) -> Any:

@@ -1,8 +1,5 @@
 """How much of every output pixel the drawn edges cover: analytic, so smooth at any width."""
 
-from functools import lru_cache
-from typing import Any
-
 import warp as wp
 
 from warp_kernels.device import Device, Phase
@@ -11,6 +8,7 @@ wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 
 BAND = 32
 """Rows of one band [px]: bands are what threads share out, so no two write one pixel."""
+_BAND = wp.constant(BAND)
 
 
 @wp.func
@@ -29,53 +27,49 @@ def line_coverage(distance: float, half_width: float) -> float:
     return outer - inner
 
 
-@lru_cache(maxsize=None)
-def _coverage_kernel() -> Any:
-    @wp.kernel(enable_backward=False, module="unique")
-    def cover_edges(
-        begin: int,
-        # In:
-        vertices: wp.array(dtype=wp.vec2d),
-        edges: wp.array(dtype=wp.vec2i),
-        edge_count: wp.array(dtype=int),
-        scale: wp.vec2d,
-        half_width: float,
-        # Out:
-        coverage_out: wp.array2d(dtype=float),
-    ):
-        """Draw one edge into one band of rows."""
-        number = begin + wp.tid()
-        band = number / edge_count[0]
-        edge = edges[number - band * edge_count[0]]
-        first = wp.cw_mul(vertices[edge[0]], scale)
-        second = wp.cw_mul(vertices[edge[1]], scale)
-        a = wp.vec2f(float(first[0]), float(first[1]))
-        b = wp.vec2f(float(second[0]), float(second[1]))
-        reach = half_width + 0.5
-        row = wp.max(int(wp.floor(wp.min(a[1], b[1]) - reach)), band * wp.static(BAND))
-        last_row = wp.min(int(wp.ceil(wp.max(a[1], b[1]) + reach)), (band + 1) * wp.static(BAND))
-        last_row = wp.min(last_row, coverage_out.shape[0])
-        rise = b[1] - a[1]
-        while row < last_row:
-            y = float(row) + 0.5
-            t0 = float(0.0)
-            t1 = float(1.0)
-            if wp.abs(rise) > 1.0e-3:
-                t0 = wp.clamp((y - reach - a[1]) / rise, 0.0, 1.0)
-                t1 = wp.clamp((y + reach - a[1]) / rise, 0.0, 1.0)
-            x0 = a[0] + t0 * (b[0] - a[0])
-            x1 = a[0] + t1 * (b[0] - a[0])
-            column = wp.max(int(wp.floor(wp.min(x0, x1) - reach)), 0)
-            last = wp.min(int(wp.ceil(wp.max(x0, x1) + reach)), coverage_out.shape[1])
-            while column < last:
-                distance = distance_to_segment(wp.vec2f(float(column) + 0.5, y), a, b)
-                covered = line_coverage(distance, half_width)
-                if covered > 0.0:
-                    wp.atomic_max(coverage_out, row, column, covered)
-                column += 1
-            row += 1
-
-    return cover_edges
+@wp.kernel(enable_backward=False)
+def cover_edges(
+    begin: int,
+    # In:
+    vertices: wp.array(dtype=wp.vec2d),
+    edges: wp.array(dtype=wp.vec2i),
+    edge_count: wp.array(dtype=int),
+    scale: wp.vec2d,
+    half_width: float,
+    # Out:
+    coverage_out: wp.array2d(dtype=float),
+):
+    """Draw one edge into one band of rows."""
+    number = begin + wp.tid()
+    band = number / edge_count[0]
+    edge = edges[number - band * edge_count[0]]
+    first = wp.cw_mul(vertices[edge[0]], scale)
+    second = wp.cw_mul(vertices[edge[1]], scale)
+    a = wp.vec2f(float(first[0]), float(first[1]))
+    b = wp.vec2f(float(second[0]), float(second[1]))
+    reach = half_width + 0.5
+    row = wp.max(int(wp.floor(wp.min(a[1], b[1]) - reach)), band * _BAND)
+    last_row = wp.min(int(wp.ceil(wp.max(a[1], b[1]) + reach)), (band + 1) * _BAND)
+    last_row = wp.min(last_row, coverage_out.shape[0])
+    rise = b[1] - a[1]
+    while row < last_row:
+        y = float(row) + 0.5
+        t0 = 0.0
+        t1 = 1.0
+        if wp.abs(rise) > 1.0e-3:
+            t0 = wp.clamp((y - reach - a[1]) / rise, 0.0, 1.0)
+            t1 = wp.clamp((y + reach - a[1]) / rise, 0.0, 1.0)
+        x0 = a[0] + t0 * (b[0] - a[0])
+        x1 = a[0] + t1 * (b[0] - a[0])
+        column = wp.max(int(wp.floor(wp.min(x0, x1) - reach)), 0)
+        last = wp.min(int(wp.ceil(wp.max(x0, x1) + reach)), coverage_out.shape[1])
+        while column < last:
+            distance = distance_to_segment(wp.vec2f(float(column) + 0.5, y), a, b)
+            covered = line_coverage(distance, half_width)
+            if covered > 0.0:
+                wp.atomic_max(coverage_out, row, column, covered)
+            column += 1
+        row += 1
 
 
 def record_edge_coverage(
@@ -102,4 +96,4 @@ def record_edge_coverage(
         coverage_out: Covered part of every output pixel, [rows, columns] float32, zero before.
     """
     inputs = [vertices, edges, edge_count, wp.vec2d(*scale), half_width]
-    return device.record(_coverage_kernel(), inputs, [coverage_out])
+    return device.record(cover_edges, inputs, [coverage_out])

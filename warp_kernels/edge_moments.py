@@ -6,7 +6,7 @@ only and both triangles beside an edge share its sums: nine walks per edge give 
 variants of every triangle.
 """
 
-from functools import lru_cache
+from functools import cache
 from typing import Any
 
 import warp as wp
@@ -20,7 +20,7 @@ from warp_kernels.variants import EDGE_VERSIONS, displacement
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 
 
-@lru_cache(maxsize=None)
+@cache
 def _edge_kernel(model: ColorModel, versions: int) -> Any:
     types = moment_types(model)
     color_type, area_type, powers_type = types.color, types.area, types.powers

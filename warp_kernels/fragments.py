@@ -3,7 +3,7 @@
 Kept as the reference that `edge_moments` must equal to the bit, and as the measure of its gain.
 """
 
-from functools import lru_cache
+from functools import cache
 from typing import Any
 
 import warp as wp
@@ -17,7 +17,7 @@ from warp_kernels.variants import TRIANGLE_VARIANTS, displacement
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 
 
-@lru_cache(maxsize=None)
+@cache
 def _fragment_kernel(model: ColorModel) -> Any:
     types = moment_types(model)
     color_type, area_type, powers_type = types.color, types.area, types.powers

@@ -4,7 +4,7 @@ Coverage is that of `raster`: each sample belongs to exactly one triangle, so ne
 doubled border can show, and no order of threads matters.
 """
 
-from functools import lru_cache
+from functools import cache
 from typing import Any
 
 import warp as wp
@@ -15,7 +15,7 @@ from warp_kernels.raster import carry_of, to_fixed, walk_edge
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 
 
-@lru_cache(maxsize=None)
+@cache
 def _gbuffer_kernel() -> Any:
     @wp.kernel(enable_backward=False, module="unique")
     def fill_triangles(

@@ -6,7 +6,7 @@ nothing otherwise. The table is one flat array, a row of W + 1 columns of d + 1 
 other, so that one pixel's entries share a cache line.
 """
 
-from functools import lru_cache
+from functools import cache
 from typing import Any
 
 import warp as wp
@@ -17,7 +17,7 @@ from warp_kernels.device import Device, Phase
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 
 
-@lru_cache(maxsize=None)
+@cache
 def _table_kernel(model: ColorModel) -> Any:
     depth = model.table_depth
 

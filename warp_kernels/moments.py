@@ -5,7 +5,7 @@ All sums are int64; `check_size` refuses an image whose sums could leave their i
 """
 
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -30,7 +30,7 @@ class MomentTypes:
     """Vector of 2 d + 1 int64: sums of x^a over the pixels left of a column."""
 
 
-@lru_cache(maxsize=None)
+@cache
 def moment_types(model: ColorModel) -> MomentTypes:
     """The vector types in which the sums of `model` are kept."""
     return MomentTypes(
@@ -40,7 +40,7 @@ def moment_types(model: ColorModel) -> MomentTypes:
     )
 
 
-@lru_cache(maxsize=None)
+@cache
 def color_sums_left_of(model: ColorModel) -> Any:
     """A wp.func: the colour moments of all pixels of a row left of a column.
 
@@ -83,7 +83,7 @@ def color_sums_left_of(model: ColorModel) -> Any:
     return color_sums
 
 
-@lru_cache(maxsize=None)
+@cache
 def area_sums_left_of(model: ColorModel) -> Any:
     """A wp.func: the area moments of all pixels of a row left of a column.
 
@@ -109,7 +109,7 @@ def area_sums_left_of(model: ColorModel) -> Any:
     return area_sums
 
 
-@lru_cache(maxsize=None)
+@cache
 def color_sums_of_pixel(model: ColorModel) -> Any:
     """A wp.func: the colour moments of a single pixel at (x, y) from the image's middle."""
     sums = moment_types(model).color

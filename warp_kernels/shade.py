@@ -4,7 +4,7 @@ A pixel whose samples all lie in one triangle is shaded once, at its centre; a p
 is shaded at every sample and averaged.
 """
 
-from functools import lru_cache
+from functools import cache
 from typing import Any
 
 import warp as wp
@@ -15,7 +15,7 @@ from warp_kernels.scene import Sample, Scene, StyleParameters
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 
 
-@lru_cache(maxsize=None)
+@cache
 def _stack(shaders: tuple[Any, ...]) -> Any:
     """A wp.func that blends the layers of some style shaders, the last on top."""
     if not shaders:
@@ -43,7 +43,7 @@ def _stack(shaders: tuple[Any, ...]) -> Any:
     return blended
 
 
-@lru_cache(maxsize=None)
+@cache
 def _shade_kernel(shaders: tuple[Any, ...], samples: int) -> Any:
     color_at = _stack(shaders)
 
@@ -63,12 +63,12 @@ def _shade_kernel(shaders: tuple[Any, ...], samples: int) -> Any:
         first_row = row * wp.static(samples)
         here = Sample()
         here.row = row
-        column = int(0)
+        column = 0
         while column < canvas_out.shape[1]:
             first = column * wp.static(samples)
             here.column = column
             here.triangle = triangle_of[first_row, first]
-            differing = int(0)
+            differing = 0
             for i in range(wp.static(samples)):
                 for j in range(wp.static(samples)):
                     differing = differing | (triangle_of[first_row + i, first + j] ^ here.triangle)

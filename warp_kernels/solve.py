@@ -4,7 +4,7 @@ The normal equations of Eq. 15 share one matrix between the channels: one Choles
 and the energy follows from its forward substitution alone, without a second pass over pixels.
 """
 
-from functools import lru_cache
+from functools import cache
 from math import comb
 from typing import Any
 
@@ -24,7 +24,7 @@ SUMS = ("edges", "fragments")
 """The two ways to sum, see `edge_moments` and `fragments`."""
 
 
-@lru_cache(maxsize=None)
+@cache
 def _gather(model: ColorModel, sums: str) -> tuple[Any, Any]:
     """Two wp.funcs: colour and area moments of one variant of one triangle.
 
@@ -35,7 +35,10 @@ def _gather(model: ColorModel, sums: str) -> tuple[Any, Any]:
 
     @wp.func
     def color_from_edges(
-        triangle: int, variant: int, sides: wp.array(dtype=wp.vec3i), sums: wp.array2d(dtype=color_type)
+        triangle: int,
+        variant: int,
+        sides: wp.array(dtype=wp.vec3i),
+        sums: wp.array2d(dtype=color_type),
     ) -> color_type:
         total = color_type()
         for side in range(3):
@@ -46,7 +49,10 @@ def _gather(model: ColorModel, sums: str) -> tuple[Any, Any]:
 
     @wp.func
     def area_from_edges(
-        triangle: int, variant: int, sides: wp.array(dtype=wp.vec3i), sums: wp.array2d(dtype=area_type)
+        triangle: int,
+        variant: int,
+        sides: wp.array(dtype=wp.vec3i),
+        sums: wp.array2d(dtype=area_type),
     ) -> area_type:
         total = area_type()
         for side in range(3):
@@ -57,13 +63,19 @@ def _gather(model: ColorModel, sums: str) -> tuple[Any, Any]:
 
     @wp.func
     def color_as_is(
-        triangle: int, variant: int, sides: wp.array(dtype=wp.vec3i), sums: wp.array2d(dtype=color_type)
+        triangle: int,
+        variant: int,
+        sides: wp.array(dtype=wp.vec3i),
+        sums: wp.array2d(dtype=color_type),
     ) -> color_type:
         return sums[triangle, variant]
 
     @wp.func
     def area_as_is(
-        triangle: int, variant: int, sides: wp.array(dtype=wp.vec3i), sums: wp.array2d(dtype=area_type)
+        triangle: int,
+        variant: int,
+        sides: wp.array(dtype=wp.vec3i),
+        sums: wp.array2d(dtype=area_type),
     ) -> area_type:
         return sums[triangle, variant]
 
@@ -72,7 +84,7 @@ def _gather(model: ColorModel, sums: str) -> tuple[Any, Any]:
     return color_as_is, area_as_is
 
 
-@lru_cache(maxsize=None)
+@cache
 def _normal_equations(model: ColorModel) -> Any:
     """Functions that centre the sums on a triangle and factorise the normal equations."""
     types = moment_types(model)
@@ -159,7 +171,7 @@ def _shifts(exponents: tuple[tuple[int, int], ...]) -> tuple[tuple[int, int, int
     )
 
 
-@lru_cache(maxsize=None)
+@cache
 def fit_moments(model: ColorModel) -> Any:
     """A wp.func: from one triangle's moments to a `Fit`, after forward substitution."""
     types = moment_types(model)
@@ -214,7 +226,7 @@ def fit_moments(model: ColorModel) -> Any:
     return fit
 
 
-@lru_cache(maxsize=None)
+@cache
 def _energy_kernel(model: ColorModel, sums: str) -> Any:
     types = moment_types(model)
     color_type, area_type = types.color, types.area
@@ -241,7 +253,7 @@ def _energy_kernel(model: ColorModel, sums: str) -> Any:
     return solve_variants
 
 
-@lru_cache(maxsize=None)
+@cache
 def _fit_kernel(model: ColorModel) -> Any:
     types = moment_types(model)
     color_type, area_type = types.color, types.area

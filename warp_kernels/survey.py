@@ -53,7 +53,7 @@ class Survey:
         return self._measure(record, half_edges)
 
     def collapse_costs(self, half_edges: np.ndarray) -> np.ndarray:
-        """Energy that each collapse of an origin adds [code value^2 px], [N]; huge if impossible."""
+        """Energy that each collapse of an origin adds [code value^2 px], [N]; huge if barred."""
         record = partial(
             record_collapse_costs,
             fan_offsets=self._workspace.fan_offsets,
@@ -64,9 +64,7 @@ class Survey:
 
     def split_gains(self, half_edges: np.ndarray, share: float = 0.5) -> np.ndarray:
         """Energy that each edge's split saves [code value^2 px], [N]; see `record_split_gains`."""
-        record = partial(
-            record_split_gains, twins=self._twins, share=share, gains_out=self._gains
-        )
+        record = partial(record_split_gains, twins=self._twins, share=share, gains_out=self._gains)
         return self._measure(record, half_edges)
 
     def _measure(self, record: Any, half_edges: np.ndarray) -> np.ndarray:

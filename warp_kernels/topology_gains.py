@@ -1,6 +1,6 @@
 """What every possible flip, collapse and split would do to the energy: all candidates at once."""
 
-from functools import lru_cache
+from functools import cache
 from typing import Any
 
 import warp as wp
@@ -30,7 +30,7 @@ def corner_after(half_edge: int) -> int:
     return half_edge - half_edge % 3 + (half_edge + 1) % 3
 
 
-@lru_cache(maxsize=None)
+@cache
 def _flip_kernel(model: ColorModel) -> Any:
     powers_type = moment_types(model).powers
     energy = triangle_energy(model)
@@ -73,7 +73,7 @@ def _flip_kernel(model: ColorModel) -> Any:
     return flip_gains
 
 
-@lru_cache(maxsize=None)
+@cache
 def _collapse_kernel(model: ColorModel) -> Any:
     powers_type = moment_types(model).powers
     energy = triangle_energy(model)
@@ -119,7 +119,7 @@ def _collapse_kernel(model: ColorModel) -> Any:
     return collapse_costs
 
 
-@lru_cache(maxsize=None)
+@cache
 def _split_kernel(model: ColorModel) -> Any:
     powers_type = moment_types(model).powers
     energy = triangle_energy(model)

@@ -1,6 +1,6 @@
 """The error of a triangle that is not in the mesh: what a change of topology would leave."""
 
-from functools import lru_cache
+from functools import cache
 from typing import Any
 
 import warp as wp
@@ -13,7 +13,7 @@ from warp_kernels.solve import fit_moments
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 
 
-@lru_cache(maxsize=None)
+@cache
 def triangle_energy(model: ColorModel) -> Any:
     """A wp.func: E of the triangle a, b, c [px] from nine numbers and the picture's tables."""
     types = moment_types(model)

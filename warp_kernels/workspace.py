@@ -48,13 +48,9 @@ class Workspace:
         types = moment_types(model)
         self._pixels = self._empty((height, width), wp.vec3ub)
         self.table = self._empty(height * (width + 1) * model.table_depth, wp.vec4i)
-        self.powers = wp.array(
-            column_powers(width, model), dtype=types.powers, device=device.warp
-        )
+        self.powers = wp.array(column_powers(width, model), dtype=types.powers, device=device.warp)
         self._controls = self._empty(3, wp.float64)
-        self._tables = record_image_tables(
-            device, model, pixels=self._pixels, table_out=self.table
-        )
+        self._tables = record_image_tables(device, model, pixels=self._pixels, table_out=self.table)
         self._counts = (0, 0, 0)
         self._front = 0
         self._allocate(vertices=512, triangles=1024)

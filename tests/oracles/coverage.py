@@ -22,9 +22,7 @@ def rounded(x: float, y: float) -> Corner:
     return tuple(Fraction(floor(Fraction(c) * SUBPIXELS + HALF), SUBPIXELS) for c in (x, y))
 
 
-def covered_pixels(
-    corners: Sequence[Corner], width: int, height: int
-) -> tuple[int, list[Pixel]]:
+def covered_pixels(corners: Sequence[Corner], width: int, height: int) -> tuple[int, list[Pixel]]:
     """List the pixels of a picture that a triangle covers.
 
     Returns:

@@ -28,9 +28,7 @@ def umbrella_gradient(mesh: Mesh, vertex: int) -> np.ndarray:
     return mesh.vertices[vertex] - mesh.vertices[ring(mesh, vertex)].mean(axis=0)
 
 
-def vertex_gradient(
-    mesh: Mesh, energies: np.ndarray, vertex: int, regularity: float
-) -> np.ndarray:
+def vertex_gradient(mesh: Mesh, energies: np.ndarray, vertex: int, regularity: float) -> np.ndarray:
     """Derivative of Eq. 7 in the position of a vertex.
 
     Args:

@@ -1,0 +1,246 @@
+"""Drawn pictures: every pixel, exact colours, any size, any style."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.spatial import Delaunay
+
+from stages.mesh import Mesh, mesh_of
+from stages.render import Renderer
+from stages.snapshot import Snapshot
+from stages.validate import assert_valid
+from tests.kernel_samples import noise, random_mesh, snapshot_of, waves
+from warp_kernels.color_model import CONSTANT, LINEAR
+from warp_kernels.device import Device
+from warp_kernels.errors import OptionError
+from warp_kernels.raster import MAX_SIDE
+from warp_kernels.styles import STYLES, Style
+from warp_kernels.styles.edges import Edges
+from warp_kernels.styles.flat import Flat
+from warp_kernels.styles.gradient import Gradient
+
+SENTINEL = 7
+"""Held by the output before anything is drawn."""
+SIZES = [(61, 47), (30, 23), (122, 94), (97, 31), (1, 1), (3, 200)]
+"""Of the source, half, double, not proportional, tiny, narrow [px]."""
+
+
+def draw(
+    snapshot: Snapshot,
+    device: str,
+    *styles: Style,
+    size: tuple[int, int] | None = None,
+    threads: int = 0,
+) -> np.ndarray:
+    """Draw a snapshot over an output that held a sentinel, [H, W, 3] uint8."""
+    picture = (snapshot.mesh.width, snapshot.mesh.height)
+    renderer = Renderer(Device(device, threads), picture, size or picture, styles)
+    renderer._canvas._pixels.fill_(SENTINEL)
+    # Sample grids start outside all triangles but inside the memory of their colours.
+    renderer._canvas._triangle_of.fill_(snapshot.mesh.triangle_count)
+    renderer._canvas._colors.fill_(SENTINEL)
+    return renderer.render(snapshot)
+
+
+def painted(mesh: Mesh, colors: np.ndarray) -> Snapshot:
+    """A snapshot in chosen colours [T, 3]."""
+    blank = np.zeros((mesh.height, mesh.width, 3), dtype=np.uint8)
+    snapshot = snapshot_of(Device("cpu"), blank, mesh, CONSTANT)
+    return replace(snapshot, coefficients=np.asarray(colors, dtype=np.float64)[:, :, None])
+
+
+def plain(mesh: Mesh, color: tuple[int, int, int]) -> Snapshot:
+    """A snapshot in one colour."""
+    return painted(mesh, np.tile(color, (mesh.triangle_count, 1)))
+
+
+def square(side: int) -> Mesh:
+    """Two triangles, cut from the upper right to the lower left."""
+    points = np.array([[0, 0], [side, 0], [side, side], [0, side]])
+    return mesh_of(points, [[0, 1, 3], [1, 2, 3]], side, side)
+
+
+@pytest.mark.parametrize("size", SIZES)
+@pytest.mark.parametrize("color", [(255, 255, 255), (13, 200, 77)])
+def test_one_color_is_exact_everywhere(
+    color: tuple[int, int, int], size: tuple[int, int], device: str
+) -> None:
+    """No background, no seam, no rounding: all triangles of one colour give that colour."""
+    mesh = random_mesh(61, 47, 80, grid=4)
+    for style in (Flat(), Gradient()):
+        pixels = draw(plain(mesh, color), device, style, size=size)
+        assert pixels.shape == (size[1], size[0], 3)
+        assert (pixels == color).all()
+
+
+def test_very_wide_output_is_drawn_whole(device: str) -> None:
+    """Beyond half the largest side there is one sample a pixel; it covers everything too."""
+    mesh = random_mesh(61, 47, 80)
+    pixels = draw(plain(mesh, (255, 255, 255)), device, Flat(), size=(MAX_SIDE, 3))
+    assert (pixels == 255).all()
+
+
+def test_flat_shows_the_mean_colors(device: str) -> None:
+    """Pixels well inside a triangle have the mean of what it covers, rounded."""
+    picture, mesh = noise(40, 40), square(40)
+    pixels = draw(snapshot_of(Device(device), picture, mesh, CONSTANT), device, Flat())
+    y, x = np.mgrid[:40, :40]
+    upper = x + y < 39
+    lower = x + y >= 39
+    assert (pixels[upper] == np.floor(picture[upper].mean(axis=0) + 0.5)).all()
+    inside = x + y > 39
+    assert (pixels[inside] == np.floor(picture[lower].mean(axis=0) + 0.5)).all()
+
+
+def test_border_between_two_triangles_is_smooth(device: str) -> None:
+    """The diagonal is a mixture of both sides, and everything else is not."""
+    pixels = draw(painted(square(32), [(0, 0, 0), (240, 240, 240)]), device, Flat())
+    y, x = np.mgrid[:32, :32]
+    assert (pixels[x + y < 31] == 0).all()
+    assert (pixels[x + y > 31] == 240).all()
+    diagonal = pixels[x + y == 31]
+    assert (diagonal == diagonal[0]).all()
+    assert 80 <= diagonal[0, 0] <= 160
+
+
+@pytest.mark.parametrize("size", [(61, 47), (122, 94), (40, 80)])
+def test_gradient_reproduces_a_linear_picture(size: tuple[int, int], device: str) -> None:
+    """A picture that is linear in x and y comes back within one code value, at any size."""
+    y, x = np.mgrid[:47, :61]
+    source = np.stack([20 + 2 * x + y, 240 - 3 * x, 15 + x + 3 * y], axis=2).astype(np.uint8)
+    snapshot = snapshot_of(Device(device), source, random_mesh(61, 47, 25, seed=4), LINEAR)
+    # a triangle whose pixels lie on a line has the constant only
+    assert snapshot.energies.max() < 1.0
+    pixels = draw(snapshot, device, Gradient(), size=size).astype(float)
+    u = (np.arange(size[0]) + 0.5) * 61 / size[0] - 0.5
+    v = ((np.arange(size[1]) + 0.5) * 47 / size[1] - 0.5)[:, None]
+    expected = np.stack(np.broadcast_arrays(20 + 2 * u + v, 240 - 3 * u, 15 + u + 3 * v), axis=2)
+    assert np.abs(pixels - expected).max() <= 1.0
+
+
+def test_colors_beyond_the_range_are_clipped(device: str) -> None:
+    """A fit that overshoots is drawn as black or white, not wrapped round."""
+    pixels = draw(painted(square(8), [(-40, 300, 1e6), (-1e6, 255.4, 0)]), device, Flat())
+    assert set(np.unique(pixels)) <= {0, 255}
+
+
+@pytest.mark.parametrize("zoom", [1, 2])
+def test_edges_have_width_color_and_opacity(zoom: int, device: str) -> None:
+    """Lines are measured in pixels of the source, centred on their edge."""
+    white, side = plain(square(40), (255, 255, 255)), 40 * zoom
+    half = draw(white, device, Flat(), Edges(width=4, color="#f00", opacity=0.5), size=(side, side))
+    row = half[side // 5]
+    np.testing.assert_allclose(row[: 2 * zoom], [(255, 127.5, 127.5)] * 2 * zoom, atol=1)
+    assert (row[2 * zoom + 1 : 10 * zoom] == 255).all()
+    solid = draw(white, device, Flat(), Edges(width=2, color="#0a141e"), size=(side, side))
+    assert (solid[:zoom, side // 5 : side // 2] == (10, 20, 30)).all()
+    assert (solid[side // 2, side // 2 - zoom // 2] == (10, 20, 30)).all()
+    assert (solid[side // 4, side // 4] == 255).all()
+
+
+def test_wider_lines_cover_more_in_proportion(device: str) -> None:
+    """The covered area grows with the width, thin lines included."""
+    white = plain(square(60), (255, 255, 255))
+    widths = (0.25, 0.5, 1.0, 2.0)
+    ink = [
+        (255.0 - draw(white, device, Flat(), Edges(width=w, color="#000"))).mean() for w in widths
+    ]
+    # half of the border's lines lies outside the picture
+    length = 60 * np.sqrt(2) + 4 * 60 / 2
+    expected = [255.0 * length * w / 3600 for w in widths]
+    np.testing.assert_allclose(ink, expected, rtol=0.12)
+
+
+def test_opacity_zero_is_invisible(device: str) -> None:
+    """Lines that let everything through change nothing."""
+    snapshot = snapshot_of(Device(device), waves(60, 40), random_mesh(60, 40, 20), CONSTANT)
+    lines = Edges(width=3, opacity=0)
+    plain_picture = draw(snapshot, device, Flat())
+    np.testing.assert_array_equal(draw(snapshot, device, Flat(), lines), plain_picture)
+
+
+def test_translated_mesh_gives_the_translated_picture(device: str) -> None:
+    """Whole pixels further, inner triangles look the same to the bit."""
+    inner = random_mesh(40, 30, 30, grid=256)
+    shift = np.array([5, 3])
+    meshes = [_framed(inner, np.array([20, 16]) + step) for step in (0 * shift, shift)]
+    rng = np.random.default_rng(3)
+    colors = rng.integers(0, 256, (meshes[0].triangle_count, 3))
+    mask = np.where(np.arange(len(colors))[:, None] < inner.triangle_count, 255, [[0, 0, 0]])
+    for style in (Flat(), Gradient()):
+        here, there = (draw(painted(m, colors), device, style) for m in meshes)
+        whole = draw(painted(meshes[0], mask), device, Flat())[..., 0] == 255
+        assert whole.sum() > 900
+        shifted = np.roll(there, -shift[::-1], axis=(0, 1))
+        np.testing.assert_array_equal(shifted[whole], here[whole])
+
+
+def _framed(inner: Mesh, offset: np.ndarray) -> Mesh:
+    """A mesh placed inside a picture of 96 x 64 px; its triangles come first."""
+    hull = inner.vertices + offset
+    corners = np.array([[0, 0], [96, 0], [0, 64], [96, 64]])
+    points = np.concatenate([hull, corners])
+    rim = np.flatnonzero(inner.on_left_right | inner.on_top_bottom)
+    used = np.concatenate([rim, len(hull) + np.arange(4)])
+    rows = used[Delaunay(points[used]).simplices]
+    outside = [row for row in rows if (row >= len(hull)).any()]
+    mesh = mesh_of(points, np.concatenate([inner.triangles, outside]), 96, 64)
+    assert_valid(mesh)
+    return mesh
+
+
+@pytest.mark.parametrize("size", [(0, 10), (10, 0), (MAX_SIDE + 1, 10)])
+def test_impossible_sizes_are_refused(size: tuple[int, int], device: str) -> None:
+    """An output without pixels or with too many is an error that names it."""
+    with pytest.raises(OptionError, match=f"{size[0]}x{size[1]}"):
+        Renderer(Device(device), (10, 10), size, (Flat(),))
+
+
+def test_growing_meshes_are_drawn(device: str) -> None:
+    """One renderer takes a small mesh, one beyond its first memory, and the small one again."""
+    small = snapshot_of(Device(device), waves(61, 47), random_mesh(61, 47, 20), CONSTANT)
+    large = snapshot_of(Device(device), waves(61, 47), random_mesh(61, 47, 900), CONSTANT)
+    renderer = Renderer(Device(device), (61, 47), (61, 47), (Flat(),))
+    first = renderer.render(small)
+    kept = first.copy()
+    np.testing.assert_array_equal(renderer.render(large), draw(large, device, Flat()))
+    np.testing.assert_array_equal(renderer.render(small), kept)
+    np.testing.assert_array_equal(first, kept)  # a picture handed out is never drawn over
+
+
+@pytest.fixture(params=STYLES)
+def stack(request: pytest.FixtureRequest) -> tuple[Style, ...]:
+    """Give each registered style as people see it: lines over flat colours."""
+    style = STYLES[request.param]()
+    return (Flat(), style) if style.line_width else (style,)
+
+
+def test_contract_of_a_style(stack: tuple[Style, ...], device: str) -> None:
+    """Defaults work; the picture is whole and equal for any number of threads."""
+    style = stack[-1]
+    assert style == type(style)()
+    assert hash(style) == hash(type(style)())
+    assert style.degree in (0, 1, 2)
+    assert len(style.parameters()) <= 8
+    model = LINEAR if style.degree else CONSTANT
+    snapshot = snapshot_of(Device(device), waves(61, 47), random_mesh(61, 47, 30), model)
+    pictures = [draw(snapshot, device, *stack, size=(75, 33), threads=n) for n in (1, 2, 3)]
+    assert pictures[0].shape == (33, 75, 3)
+    assert pictures[0].dtype == np.uint8
+    assert len(np.unique(pictures[0].reshape(-1, 3), axis=0)) > 10
+    for other in pictures[1:]:
+        np.testing.assert_array_equal(other, pictures[0])
+
+
+@pytest.mark.parametrize("size", [(96, 64), (160, 120)])
+def test_golden_pictures(
+    stack: tuple[Style, ...], size: tuple[int, int], device: str, assert_matches_golden
+) -> None:
+    """Each style looks as it did when somebody last looked at it."""
+    style = stack[-1]
+    name = next(key for key, kind in STYLES.items() if isinstance(style, kind))
+    model = LINEAR if style.degree else CONSTANT
+    snapshot = snapshot_of(Device(device), waves(96, 64), random_mesh(96, 64, 60, seed=8), model)
+    pixels = draw(snapshot, device, *stack, size=size)
+    assert_matches_golden(pixels, f"{name}_{size[0]}x{size[1]}")
