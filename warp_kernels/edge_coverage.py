@@ -54,8 +54,8 @@ def cover_edges(
     rise = b[1] - a[1]
     while row < last_row:
         y = float(row) + 0.5
-        t0 = 0.0
-        t1 = 1.0
+        t0 = float(0.0)
+        t1 = float(1.0)
         if wp.abs(rise) > 1.0e-3:
             t0 = wp.clamp((y - reach - a[1]) / rise, 0.0, 1.0)
             t1 = wp.clamp((y + reach - a[1]) / rise, 0.0, 1.0)

@@ -77,7 +77,7 @@ def winding(a: wp.vec2i, b: wp.vec2i, column: int, row: int) -> int:
     y = row * _UNIT + _HALF
     top = a
     bottom = b
-    sign = 1
+    sign = int(1)
     if b[1] < a[1]:
         top = b
         bottom = a

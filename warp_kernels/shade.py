@@ -63,12 +63,12 @@ def _shade_kernel(shaders: tuple[Any, ...], samples: int) -> Any:
         first_row = row * wp.static(samples)
         here = Sample()
         here.row = row
-        column = 0
+        column = int(0)
         while column < canvas_out.shape[1]:
             first = column * wp.static(samples)
             here.column = column
             here.triangle = triangle_of[first_row, first]
-            differing = 0
+            differing = int(0)
             for i in range(wp.static(samples)):
                 for j in range(wp.static(samples)):
                     differing = differing | (triangle_of[first_row + i, first + j] ^ here.triangle)

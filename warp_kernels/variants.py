@@ -35,7 +35,7 @@ def edge_version(variant: int, side: int, reversed_edge: int) -> int:
         return 0
     corner = (variant - 1) / 4
     direction = (variant - 1) - 4 * corner
-    end = 2
+    end = int(2)
     if corner == side:
         end = 0
     if corner == (side + 1) % 3:
