@@ -4,6 +4,7 @@ import numpy as np
 
 from stages.mesh import Mesh
 from stages.optimize import load_mesh
+from stages.snapshot import colors_at_centres
 from warp_kernels.survey import Survey
 from warp_kernels.workspace import Workspace
 
@@ -19,6 +20,10 @@ class Appraiser:
     def __init__(self, workspace: Workspace, least_height: float) -> None:
         self._workspace = workspace
         self._survey = Survey(workspace, least_height)
+        self.colors = np.zeros((0, 3))
+        """Colour at the centre of each triangle of the measured mesh [code values], [T, 3]."""
+        self.counts = np.zeros(0, dtype=np.int64)
+        """Pixels of each triangle of the measured mesh, [T]."""
 
     def energies(self, mesh: Mesh) -> np.ndarray:
         """Take a mesh and measure it.
@@ -27,7 +32,8 @@ class Appraiser:
             E(T) [code value^2 px], [T].
         """
         load_mesh(self._workspace, mesh)
-        _, energies, _ = self._workspace.fit()
+        coefficients, energies, self.counts = self._workspace.fit()
+        self.colors = colors_at_centres(mesh, self._workspace.model, coefficients)
         self._survey.load_topology(mesh.twins, mesh.triangles.reshape(-1))
         return energies
 

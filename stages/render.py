@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from stages.snapshot import Snapshot
+from stages.snapshot import Snapshot, colors_at_centres
 from warp_kernels.canvas import Canvas
 from warp_kernels.device import Device
 from warp_kernels.errors import OptionError
@@ -44,31 +44,21 @@ class Renderer:
         """
         mesh = snapshot.mesh
         centres = mesh.vertices[mesh.triangles].mean(axis=1)
-        colors, gradients = _linear_parts(snapshot, centres)
+        colors = colors_at_centres(mesh, snapshot.model, snapshot.coefficients)
         return self._canvas.draw(
             vertices=mesh.vertices,
             triangles=mesh.triangles,
             edges=mesh.edge_vertices,
             colors=np.clip(colors, 0.0, 255.0),
-            gradients=gradients,
+            gradients=_gradients(snapshot),
             centres=centres,
         )
 
 
-def _linear_parts(snapshot: Snapshot, centres: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Colour at each triangle's centre and its change per pixel.
-
-    Args:
-        snapshot: The triangles and their polynomials.
-        centres: Centroids [px], [T, 2].
-
-    Returns:
-        Colours [code values], [T, 3], and gradients [code values / px], [T, 2, 3].
-    """
-    coefficients = snapshot.coefficients
-    if snapshot.model.degree == 0:
-        return coefficients[:, :, 0], np.zeros((len(coefficients), 2, 3))
-    exponents = np.array(snapshot.model.exponents)
-    slopes = coefficients[:, :, [snapshot.model.term(1, 0), snapshot.model.term(0, 1)]]
-    values = np.prod(centres[:, None, :] ** exponents, axis=2)
-    return np.einsum("tck,tk->tc", coefficients, values), slopes.transpose(0, 2, 1)
+def _gradients(snapshot: Snapshot) -> np.ndarray:
+    """Linear part of the colours [code values / px], [T, 2, 3]."""
+    coefficients, model = snapshot.coefficients, snapshot.model
+    if model.degree == 0:
+        return np.zeros((len(coefficients), 2, 3))
+    slopes = coefficients[:, :, [model.term(1, 0), model.term(0, 1)]]
+    return slopes.transpose(0, 2, 1)

@@ -40,3 +40,21 @@ class Snapshot:
         """
         samples = CHANNELS * self.mesh.width * self.mesh.height
         return float(np.sqrt(2.0 * self.energies.sum() / samples))
+
+
+def colors_at_centres(mesh: Mesh, model: ColorModel, coefficients: np.ndarray) -> np.ndarray:
+    """Values of the colour polynomials at the triangles' centroids.
+
+    Args:
+        mesh: The triangles.
+        model: Fixes the terms.
+        coefficients: As in a snapshot, [T, 3, K].
+
+    Returns:
+        Colours, not clipped [code values], [T, 3].
+    """
+    if model.degree == 0:
+        return coefficients[:, :, 0]
+    centres = mesh.vertices[mesh.triangles].mean(axis=1)
+    terms = np.prod(centres[:, None, :] ** np.array(model.exponents), axis=2)
+    return np.einsum("tck,tk->tc", coefficients, terms)

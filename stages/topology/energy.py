@@ -86,7 +86,7 @@ def _split(mesh: Mesh, appraiser: Appraiser, goal: Goal) -> Mesh:
     if missing <= 0:
         return mesh
     energies = appraiser.energies(mesh)
-    edges, gains = _ranked_splits(mesh, appraiser)
+    edges, gains = _ranked_splits(mesh, appraiser, energies, missing)
     if goal.threshold is not None:
         bad = energies > goal.threshold**2 * mesh.width * mesh.height
         beside = bad[edges // 3] | bad[np.maximum(mesh.twins[edges], 0) // 3]
@@ -98,12 +98,66 @@ def _split(mesh: Mesh, appraiser: Appraiser, goal: Goal) -> Mesh:
     return split_edges(mesh, edges) if len(edges) else mesh
 
 
-def _ranked_splits(mesh: Mesh, appraiser: Appraiser) -> tuple[np.ndarray, np.ndarray]:
-    """Edges of the measured mesh and what a split of each saves per new triangle, best first."""
+def _ranked_splits(
+    mesh: Mesh, appraiser: Appraiser, energies: np.ndarray, most: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Edges of the measured mesh and what a split of each saves per new triangle, best first.
+
+    A split cannot save more than the energy of the triangles beside it, so only the edges with
+    the largest energies beside them are measured.
+
+    Args:
+        mesh: The measured mesh.
+        appraiser: Has measured it.
+        energies: E(T) [code value^2 px], [T].
+        most: Number of edges worth knowing.
+    """
     edges = mesh.edge_half_edges
-    gains = appraiser.split_gains(edges) / np.where(mesh.twins[edges] >= 0, 2, 1)
+    twins = mesh.twins[edges]
+    beside = energies[edges // 3] + np.where(twins >= 0, energies[twins // 3], 0.0)
+    likely = np.argsort(-beside, kind="stable")[: EXAMINED * most]
+    edges = edges[likely]
+    gains = appraiser.split_gains(edges) / np.where(twins[likely] >= 0, 2, 1)
     order = np.argsort(-gains, kind="stable")
     return edges[order], gains[order]
+
+
+def _ranked_collapses(mesh: Mesh, appraiser: Appraiser, most: int) -> tuple[np.ndarray, np.ndarray]:
+    """Half-edges of the measured mesh and what each collapse costs per lost triangle, best first.
+
+    If all triangles around a vertex took one colour, the energy would grow by the spread of their
+    colours; no collapse of the vertex costs more. Only the vertices with the smallest spread are
+    measured.
+
+    Args:
+        mesh: The measured mesh.
+        appraiser: Has measured it.
+        most: Number of vertices that may go.
+    """
+    likely = np.argsort(_spread(mesh, appraiser), kind="stable")[: EXAMINED * most]
+    chosen = np.zeros(mesh.vertex_count, dtype=bool)
+    chosen[likely] = True
+    half_edges = np.flatnonzero(chosen[mesh.triangles.reshape(-1)])
+    costs = appraiser.collapse_costs(half_edges) / 2
+    order = np.argsort(costs, kind="stable")[: EXAMINED * most]
+    return half_edges[order], costs[order]
+
+
+def _spread(mesh: Mesh, appraiser: Appraiser) -> np.ndarray:
+    """Spread of the mean colours around each vertex, weighted by pixels [code value^2 px], [V]."""
+    corners = mesh.triangles.reshape(-1)
+    weights = np.repeat(appraiser.counts.astype(np.float64), 3)
+    colors = np.repeat(appraiser.colors, 3, axis=0)
+
+    def around(values: np.ndarray) -> np.ndarray:
+        """Sum over the corners at every vertex."""
+        return np.bincount(corners, weights=values, minlength=mesh.vertex_count)
+
+    total = np.maximum(around(weights), 1.0)
+    spread = around(weights * (colors**2).sum(axis=1))
+    for channel in range(colors.shape[1]):
+        spread -= around(weights * colors[:, channel]) ** 2 / total
+    return 0.5 * spread
 
 
 def _relocate(mesh: Mesh, appraiser: Appraiser, goal: Goal, most: int, profit: float) -> Mesh:
@@ -116,17 +170,19 @@ def _relocate(mesh: Mesh, appraiser: Appraiser, goal: Goal, most: int, profit: f
         most: Number of vertices that may go.
         profit: How many times a gain must exceed the cost.
     """
-    appraiser.energies(mesh)
-    _, gains = _ranked_splits(mesh, appraiser)
-    half_edges = np.arange(3 * mesh.triangle_count)
-    costs = appraiser.collapse_costs(half_edges) / 2
-    cheapest = np.argsort(costs, kind="stable")[: EXAMINED * most]
-    cheapest = cheapest[profit * costs[cheapest] < gains[0]]
-    cheapest = cheapest[collapsible(mesh, half_edges[cheapest])]
-    cheapest = cheapest[independent_collapses(mesh, half_edges[cheapest])][:most]
-    worthwhile = gains[: len(cheapest)] > profit * costs[cheapest[: len(gains)]]
-    going = cheapest[: int(worthwhile.sum())]
+    if most < 1:
+        return mesh
+    energies = appraiser.energies(mesh)
+    _, gains = _ranked_splits(mesh, appraiser, energies, most)
+    going, costs = _ranked_collapses(mesh, appraiser, most)
+    tempting = profit * costs < gains[0]
+    going, costs = going[tempting], costs[tempting]
+    legal = collapsible(mesh, going)
+    going, costs = going[legal], costs[legal]
+    apart = independent_collapses(mesh, going)
+    going, costs = going[apart][:most], costs[apart][:most]
+    pairs = min(len(going), len(gains))
+    going = going[: int((gains[:pairs] > profit * costs[:pairs]).sum())]
     if not len(going):
         return mesh
-    smaller = collapse_edges(mesh, half_edges[going])
-    return _split(smaller, appraiser, goal)
+    return _split(collapse_edges(mesh, going), appraiser, goal)

@@ -1,0 +1,230 @@
+"""One frame: the wanted number of triangles, valid, repeatable, and stable in time."""
+
+from functools import lru_cache
+
+import numpy as np
+import pytest
+
+from stages.layouts import LAYOUTS
+from stages.refine import RefineOptions
+from stages.snapshot import Snapshot
+from stages.topology import TOPOLOGIES
+from stages.triangulate import TriangulateOptions, Triangulator
+from stages.validate import assert_valid
+from tests.kernel_samples import frame_of, noise, waves
+from warp_kernels.color_model import COLOR_MODELS, LINEAR
+from warp_kernels.device import Device
+from warp_kernels.errors import OptionError
+
+WIDTH, HEIGHT = 151, 113
+ITERATIONS = 60
+
+
+def options(triangles: int = 120, error: float | None = None, **others) -> TriangulateOptions:
+    """Few iterations, so that tests are quick."""
+    refine = RefineOptions(triangles=triangles, error=error)
+    return TriangulateOptions(**{"iterations": ITERATIONS, "refine": refine, **others})
+
+
+def triangulated(
+    picture: np.ndarray,
+    wanted: TriangulateOptions,
+    device: str = "cpu",
+    *,
+    threads: int = 0,
+    layout: str = "importance",
+) -> Snapshot:
+    """A picture's snapshot from scratch."""
+    size = (picture.shape[1], picture.shape[0])
+    triangulator = Triangulator(Device(device, threads), size, wanted)
+    rng = np.random.default_rng(5)
+    return triangulator.first(frame_of(picture), LAYOUTS[layout](), rng)
+
+
+@lru_cache
+def scene() -> np.ndarray:
+    """Waves, a disc and a little noise: something to do everywhere."""
+    rough = noise(WIDTH, HEIGHT).astype(int) // 16 - 8
+    return np.clip(waves(WIDTH, HEIGHT) + rough, 0, 255).astype(np.uint8)
+
+
+@pytest.mark.parametrize("topology", TOPOLOGIES)
+@pytest.mark.parametrize("layout", LAYOUTS)
+@pytest.mark.parametrize("count", [30, 121])
+def test_count_is_met(count: int, layout: str, topology: str, device: str) -> None:
+    """As many triangles as asked for, give or take one, in a valid mesh."""
+    wanted = options(count, topology=topology)
+    snapshot = triangulated(scene(), wanted, device, layout=layout)
+    assert_valid(snapshot.mesh)
+    assert abs(snapshot.mesh.triangle_count - count) <= 1
+    assert snapshot.counts.sum() == WIDTH * HEIGHT
+
+
+@pytest.mark.parametrize("color", COLOR_MODELS)
+def test_error_is_that_of_the_colors(color: str, device: str) -> None:
+    """The snapshot's rmse is what comparing its colours with the picture gives."""
+    picture = scene()
+    snapshot = triangulated(picture, options(color=color), device)
+    mesh = snapshot.mesh
+    mean = picture.reshape(-1, 3).mean(axis=0)
+    assert snapshot.rmse < 0.6 * np.sqrt(((picture - mean) ** 2).mean())
+    assert snapshot.energies.shape == snapshot.counts.shape == (mesh.triangle_count,)
+    terms = COLOR_MODELS[color].term_count
+    assert snapshot.coefficients.shape == (mesh.triangle_count, 3, terms)
+    expected = np.sqrt(2 * snapshot.energies.sum() / (3 * WIDTH * HEIGHT))
+    assert snapshot.rmse == pytest.approx(expected)
+
+
+def test_more_triangles_leave_less_error(device: str) -> None:
+    """Four times as many triangles are clearly better, linear colours better than constant."""
+    few, many = (triangulated(scene(), options(n), device).rmse for n in (40, 160))
+    assert many < 0.8 * few
+    assert triangulated(scene(), options(40, color="linear"), device).rmse < few
+
+
+def test_drawn_model_with_more_terms_is_fitted(device: str) -> None:
+    """Constant colours optimised and linear ones drawn: the linear fit is in the snapshot."""
+    wanted = options()
+    triangulator = Triangulator(Device(device), (WIDTH, HEIGHT), wanted, drawn=LINEAR)
+    rng = np.random.default_rng(5)
+    snapshot = triangulator.first(frame_of(scene()), LAYOUTS["grid"](), rng)
+    plain = triangulated(scene(), wanted, device, layout="grid")
+    np.testing.assert_array_equal(snapshot.mesh.vertices, plain.mesh.vertices)
+    assert snapshot.model is LINEAR
+    assert snapshot.rmse < plain.rmse
+
+
+def same(first: Snapshot, second: Snapshot) -> bool:
+    """Whether two snapshots agree to the bit."""
+    return (
+        np.array_equal(first.mesh.vertices, second.mesh.vertices)
+        and np.array_equal(first.mesh.triangles, second.mesh.triangles)
+        and np.array_equal(first.mesh.triangle_ids, second.mesh.triangle_ids)
+        and np.array_equal(first.coefficients, second.coefficients)
+        and np.array_equal(first.energies, second.energies)
+    )
+
+
+@pytest.mark.parametrize("color", COLOR_MODELS)
+def test_threads_and_repetition_change_no_bit(color: str, device: str) -> None:
+    """One, two and three threads, and once more: the same snapshot."""
+    first, *others = (
+        triangulated(scene(), options(color=color), device, threads=n) for n in (1, 2, 3, 1)
+    )
+    assert all(same(first, other) for other in others)
+
+
+def test_both_sums_give_the_same_snapshot(device: str) -> None:
+    """`fragments` is slower and nothing else."""
+    edges, fragments = (
+        triangulated(scene(), options(60, sums=sums, iterations=20), device)
+        for sums in ("edges", "fragments")
+    )
+    assert same(edges, fragments)
+
+
+@pytest.mark.parametrize("axis", [0, 1])
+def test_mirrored_picture_is_approximated_as_well(axis: int, device: str) -> None:
+    """No direction is preferred: the error of the mirrored picture is about the same."""
+    straight = triangulated(scene(), options(), device).rmse
+    mirrored = triangulated(np.flip(scene(), axis).copy(), options(), device).rmse
+    assert mirrored == pytest.approx(straight, rel=0.1)
+
+
+def test_lower_threshold_takes_more_triangles(device: str) -> None:
+    """--error: fewer triangles for a coarser threshold, none above it but the smallest."""
+    counts = []
+    for error in (0.4, 0.8, 1.6):
+        snapshot = triangulated(scene(), options(4000, error), device)
+        assert_valid(snapshot.mesh)
+        counts.append(snapshot.mesh.triangle_count)
+        errors = np.sqrt(snapshot.energies / (WIDTH * HEIGHT))
+        assert np.mean(errors > 1.1 * error) < 0.05
+    assert counts[0] > 1.3 * counts[1] > 1.3 * 1.3 * counts[2]
+    assert counts[0] < 2000
+
+
+def test_count_caps_the_threshold(device: str) -> None:
+    """--triangles bounds what --error asks for."""
+    snapshot = triangulated(scene(), options(100, error=0.01), device)
+    assert abs(snapshot.mesh.triangle_count - 100) <= 1
+
+
+@pytest.mark.parametrize("layout", LAYOUTS)
+@pytest.mark.parametrize("size", [(1, 1), (2, 1), (1, 5), (3, 2), (7, 5), (2, 300), (300, 2)])
+def test_tiny_pictures(size: tuple[int, int], layout: str, device: str) -> None:
+    """However small the picture, the mesh is valid and every pixel is covered."""
+    for color in COLOR_MODELS:
+        wanted = options(50, color=color, iterations=20)
+        snapshot = triangulated(noise(*size), wanted, device, layout=layout)
+        assert_valid(snapshot.mesh)
+        assert snapshot.mesh.triangle_count >= 2
+        assert snapshot.counts.sum() == size[0] * size[1]
+
+
+@pytest.mark.parametrize("layout", LAYOUTS)
+@pytest.mark.parametrize("value", [0, 255])
+def test_constant_picture(value: int, layout: str, device: str) -> None:
+    """Nothing to approximate: no error, no crash, a valid mesh."""
+    picture = np.full((40, 50, 3), value, dtype=np.uint8)
+    for color in COLOR_MODELS:
+        snapshot = triangulated(picture, options(50, color=color), device, layout=layout)
+        assert_valid(snapshot.mesh)
+        assert snapshot.rmse < 1e-4
+
+
+def test_least_number_of_triangles(device: str) -> None:
+    """Two triangles are possible; one is refused."""
+    snapshot = triangulated(scene(), options(2, iterations=20), device, layout="grid")
+    assert_valid(snapshot.mesh)
+    assert snapshot.mesh.triangle_count <= 3
+    with pytest.raises(OptionError, match="--triangles 1"):
+        options(1)
+
+
+def test_no_iteration_is_possible(device: str) -> None:
+    """Zero iterations give a valid mesh, first and later."""
+    wanted = options(iterations=0, frame_iterations=0)
+    triangulator = Triangulator(Device(device), (WIDTH, HEIGHT), wanted)
+    first = triangulator.first(frame_of(scene()), LAYOUTS["grid"](), np.random.default_rng(0))
+    assert_valid(triangulator.next(frame_of(scene(), 1), first.mesh).mesh)
+
+
+@pytest.mark.parametrize(
+    "wrong", [{"iterations": -1}, {"color": "cubic"}, {"topology": "x"}, {"sums": "pixels"}]
+)
+def test_impossible_options_are_refused(wrong: dict) -> None:
+    """The message names flag and value."""
+    (name, value), *_ = wrong.items()
+    with pytest.raises(OptionError, match=f"--{name} {value}"):
+        options(**wrong)
+
+
+@pytest.mark.parametrize(
+    "topology",
+    [
+        "energy",
+        pytest.param(
+            "delaunay",
+            marks=pytest.mark.xfail(
+                strict=True, reason="collapses and splits go on although nothing changes"
+            ),
+        ),
+    ],
+)
+def test_still_clip_comes_to_rest(topology: str, device: str) -> None:
+    """The same picture again and again: vertices stay where they are, and hardly any changes."""
+    wanted = options(iterations=300, topology=topology)
+    triangulator = Triangulator(Device(device), (WIDTH, HEIGHT), wanted)
+    rng = np.random.default_rng(1)
+    snapshots = [triangulator.first(frame_of(scene()), LAYOUTS["importance"](), rng)]
+    for number in range(1, 9):
+        snapshots.append(triangulator.next(frame_of(scene(), number), snapshots[-1].mesh))
+        assert_valid(snapshots[-1].mesh)
+    before, after = snapshots[-2].mesh, snapshots[-1].mesh
+    kept, old, new = np.intersect1d(before.vertex_ids, after.vertex_ids, return_indices=True)
+    assert len(kept) >= 0.98 * before.vertex_count
+    moved = np.linalg.norm(after.vertices[new] - before.vertices[old], axis=1)
+    assert np.median(moved) < 0.05
+    assert np.quantile(moved, 0.9) < 0.25
+    assert snapshots[-1].rmse <= 1.03 * snapshots[0].rmse
