@@ -4,6 +4,7 @@ import threading
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from itertools import pairwise
 from pathlib import Path
 
 import av
@@ -30,9 +31,7 @@ from warp_kernels.errors import OptionError, OutputError
 from warp_kernels.styles import STYLES
 
 SHAPES = Path(__file__).parents[1] / "sample_videos" / "shapes.mp4"
-QUICK = TriangulateOptions(
-    iterations=40, frame_iterations=6, refine=RefineOptions(triangles=120)
-)
+QUICK = TriangulateOptions(iterations=40, frame_iterations=6, refine=RefineOptions(triangles=120))
 
 
 class RecordingTriangulator(Triangulator):
@@ -156,7 +155,7 @@ def test_sample_looks_like_its_source(shapes: Recorded) -> None:
 
 def test_ids_persist_within_a_shot(shapes: Recorded) -> None:
     """From frame to frame most vertices are the same ones, and numbers are never given twice."""
-    for before, after in zip(shapes.snapshots, shapes.snapshots[1:], strict=False):
+    for before, after in pairwise(shapes.snapshots):
         if after.frame_index != CUT_FRAME:
             kept = np.isin(before.mesh.vertex_ids, after.mesh.vertex_ids)
             assert kept.mean() > 0.8
@@ -231,9 +230,7 @@ def test_same_job_gives_the_same_frames(clip: Path, tmp_path: Path) -> None:
         np.testing.assert_array_equal(one.mesh.vertices, other.mesh.vertices)
         np.testing.assert_array_equal(one.coefficients, other.coefficients)
     seeded = run(replace(job, output=tmp_path / "c.mp4", seed=1))
-    assert not np.array_equal(
-        seeded.snapshots[0].mesh.vertices, first.snapshots[0].mesh.vertices
-    )
+    assert not np.array_equal(seeded.snapshots[0].mesh.vertices, first.snapshots[0].mesh.vertices)
 
 
 class Planted(Progress):
@@ -309,7 +306,7 @@ def test_translated_clip_moves_vertices_by_the_translation(tmp_path: Path) -> No
     wanted = replace(QUICK, iterations=200, frame_iterations=20)
     snapshots = run(Job(source, tmp_path / "out.mp4", triangulate=wanted)).snapshots
     assert len(snapshots) == 6
-    for before, after in zip(snapshots, snapshots[1:], strict=False):
+    for before, after in pairwise(snapshots):
         _, old, new = np.intersect1d(
             before.mesh.vertex_ids, after.mesh.vertex_ids, return_indices=True
         )

@@ -159,7 +159,7 @@ def test_energies_do_not_depend_on_the_order_of_triangles(model: ColorModel, dev
 def test_mirrored_picture_has_the_mirrored_energies(model: ColorModel, device: str) -> None:
     """Left and right exchanged: the same errors, moved right and moved left exchanged."""
     picture, mesh = noise(45, 31), random_mesh(45, 31, 60)
-    flipped = (mesh.vertices - (45, 0)) * (-1, 1)
+    flipped = (mesh.vertices - np.array([45, 0])) * (-1, 1)
     mirrored = mesh_of(flipped, mesh.triangles[:, [0, 2, 1]], 45, 31)
     before = poisoned_workspace(Device(device), picture, mesh, model).energies()
     after = poisoned_workspace(Device(device), picture[:, ::-1].copy(), mirrored, model).energies()
@@ -176,7 +176,7 @@ def test_shifted_picture_has_the_same_energies(model: ColorModel, device: str) -
     inside = ((mesh.vertices > 1) & (mesh.vertices < (39, 29))).all(axis=1)
     kept = inside[mesh.triangles].all(axis=1)
     here = poisoned_workspace(Device(device), larger[7:37, 11:51].copy(), mesh, model).energies()
-    wide = mesh_of(mesh.vertices + (11, 7), mesh.triangles, 60, 50)
+    wide = mesh_of(mesh.vertices + np.array([11, 7]), mesh.triangles, 60, 50)
     there = poisoned_workspace(Device(device), larger, wide, model).energies()
     tolerance = 0.0 if model is CONSTANT else ENERGY_TOLERANCE
     np.testing.assert_allclose(there[kept], here[kept], rtol=0, atol=tolerance)

@@ -50,6 +50,15 @@ def until(condition, seconds: float = 5.0) -> bool:
     return bool(condition())
 
 
+def put_all(behind: Behind[int], count: int, error: Exception | None = None) -> None:
+    """Put 0, 1, ... inside the block, then raise an error in it, if there is one."""
+    with behind as consumer:
+        for item in range(count):
+            consumer.put(item)
+        if error is not None:
+            raise error
+
+
 @pytest.mark.parametrize("count", [0, 1, 50])
 def test_ahead_keeps_everything_in_order(count: int) -> None:
     """All items come, in order, however fast the consumer is."""
@@ -128,15 +137,13 @@ def test_behind_is_bounded() -> None:
 
 
 def test_error_of_the_consumer_reaches_the_producer() -> None:
-    """A later `put` raises it, and the producer is not kept waiting."""
+    """A later `put` raises it, however many there are, and the producer is not kept waiting."""
 
     def fail(_: int) -> None:
         raise OSError("planted")
 
-    with pytest.raises(OSError, match="planted"), Behind(fail, depth=1) as consumer:
-        for item in range(1000):
-            consumer.put(item)
-            assert item < 999
+    with pytest.raises(OSError, match="planted"):
+        put_all(Behind(fail, depth=1), 10**9)
 
 
 def test_error_on_the_last_item_is_raised_at_the_end() -> None:
@@ -147,9 +154,8 @@ def test_error_on_the_last_item_is_raised_at_the_end() -> None:
         if item == 2:
             raise OSError("planted")
 
-    with pytest.raises(OSError, match="planted"), Behind(fail_late, depth=5) as consumer:
-        for item in range(3):
-            consumer.put(item)
+    with pytest.raises(OSError, match="planted"):
+        put_all(Behind(fail_late, depth=5), 3)
 
 
 def test_error_in_the_block_drops_what_waits() -> None:
@@ -160,8 +166,6 @@ def test_error_in_the_block_drops_what_waits() -> None:
         time.sleep(0.02)
         taken.append(item)
 
-    with pytest.raises(KeyError), Behind(slowly, depth=50) as consumer:
-        for item in range(50):
-            consumer.put(item)
-        raise KeyError("planted")
+    with pytest.raises(KeyError, match="planted"):
+        put_all(Behind(slowly, depth=50), 50, KeyError("planted"))
     assert len(taken) < 5

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import warp as wp
 
-from warp_kernels.device import Device
+from warp_kernels.device import Device, Phase
 from warp_kernels.edge_coverage import BAND, record_edge_coverage
 from warp_kernels.gbuffer import record_gbuffer
 from warp_kernels.raster import MAX_SIDE
@@ -16,6 +16,8 @@ from warp_kernels.styles import Style
 SAMPLES = 3
 """Samples per output pixel, across and down each; fewer where the sample grid would exceed what
 coverage can count, see `raster.MAX_SIDE`."""
+BAND_SAMPLES = 1 << 19
+"""Samples of a band, for which triangles are found before they are shaded: 2 MB stay in cache."""
 
 
 class Canvas:
@@ -41,8 +43,10 @@ class Canvas:
         self.styles = styles
         self.samples = max(1, min(SAMPLES, MAX_SIDE // max(output)))
         width, height = output
-        rows, columns = height * self.samples, width * self.samples
-        self._triangle_of = wp.empty((rows, columns), dtype=int, device=device.warp)
+        columns = width * self.samples
+        self._band = max(1, min(height, BAND_SAMPLES // (columns * self.samples)))
+        band = (self._band * self.samples, columns)
+        self._triangle_of = wp.empty(band, dtype=int, device=device.warp)
         self._pixels = wp.empty((height, width), dtype=wp.vec3ub, device=device.warp)
         self._edge_count = wp.zeros(1, dtype=int, device=device.warp)
         self._line_width = max((style.line_width for style in styles), default=0.0)
@@ -92,14 +96,16 @@ class Canvas:
             (self._edge_count, np.array([len(edges)])),
         ):
             self.device.write(array, values)
-        self._gbuffer.resize(len(triangles))
-        phases = [self._gbuffer]
+        phases = []
         if self._line_width:
             self._coverage.zero_()
             self._edge_drawing.resize(-(-self.output[1] // BAND), per_element=len(edges))
             phases.append(self._edge_drawing)
-        self._shading.resize(self.output[1])
-        self.device.run([*phases, self._shading])
+        for top, filling, shading in self._bands:
+            filling.resize(len(triangles))
+            shading.resize(min(self._band, self.output[1] - top))
+            phases += [filling, shading]
+        self.device.run(phases)
         return self.device.read(self._pixels, self.output[1])
 
     def _allocate(self, *, vertices: int, triangles: int) -> None:
@@ -120,13 +126,6 @@ class Canvas:
         scene.gradients = self._gradients
         scene.centres = self._centres
         scene.edge_coverage = self._coverage
-        self._gbuffer = record_gbuffer(
-            self.device,
-            vertices=self._vertices,
-            triangles=self._triangles,
-            scale=(scale[0] * self.samples, scale[1] * self.samples),
-            triangle_out=self._triangle_of,
-        )
         self._edge_drawing = record_edge_coverage(
             self.device,
             vertices=self._vertices,
@@ -136,7 +135,20 @@ class Canvas:
             half_width=0.5 * self._line_width * scale[1],
             coverage_out=self._coverage,
         )
-        self._shading = record_shade(
+        tops = range(0, self.output[1], self._band)
+        self._bands = [(top, *self._record_band(top, scale, scene)) for top in tops]
+
+    def _record_band(self, top: int, scale: tuple[float, float], scene: Any) -> tuple[Phase, Phase]:
+        """Record what fills and what shades the band that begins with output row `top`."""
+        filling = record_gbuffer(
+            self.device,
+            vertices=self._vertices,
+            triangles=self._triangles,
+            scale=(scale[0] * self.samples, scale[1] * self.samples),
+            first_row=top * self.samples,
+            triangle_out=self._triangle_of,
+        )
+        shading = record_shade(
             self.device,
             shaders=tuple(style.shader for style in self.styles),
             samples=self.samples,
@@ -144,8 +156,10 @@ class Canvas:
             parameters=self._parameters,
             triangle_of=self._triangle_of,
             picture_per_sample=(1 / (scale[0] * self.samples), 1 / (scale[1] * self.samples)),
+            top=top,
             canvas_out=self._pixels,
         )
+        return filling, shading
 
     def _empty(self, shape: Any, dtype: Any) -> wp.array:
         return wp.empty(shape, dtype=dtype, device=self.device.warp)

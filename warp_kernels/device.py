@@ -10,8 +10,7 @@ Every kernel's first parameter is `begin`, the first element of its part.
 import os
 import sys
 from collections.abc import Sequence
-from queue import SimpleQueue
-from threading import Lock, Semaphore, Thread
+from threading import Lock, Thread
 from typing import Any
 
 import numpy as np
@@ -31,19 +30,28 @@ class Phase:
     Args:
         parts: Recorded Warp launches of one kernel, to be spread over disjoint ranges.
         per_element: Kernel threads per element.
+        smallest_part: Elements below which a second part costs more than it saves.
     """
 
-    def __init__(self, parts: Sequence[Any], per_element: int) -> None:
+    def __init__(
+        self, parts: Sequence[Any], per_element: int, smallest_part: int = SMALLEST_PART
+    ) -> None:
         self.parts = tuple(parts)
         self.count = 0
         self._per_element = per_element
+        self._smallest_part = smallest_part
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether the first part does everything."""
+        return all(part.bounds.size == 0 for part in self.parts[1:])
 
     def resize(self, count: int, *, per_element: int | None = None) -> None:
         """Spread `count` elements over the parts, of `per_element` threads if that changes."""
         if per_element is not None:
             self._per_element = per_element
         self.count = count
-        share = max(-(-count // len(self.parts)), SMALLEST_PART)
+        share = max(-(-count // len(self.parts)), self._smallest_part)
         for number, part in enumerate(self.parts):
             begin = min(number * share, count)
             part.set_param_at_index(0, begin * self._per_element)
@@ -70,17 +78,24 @@ class Device:
         self.is_cuda = bool(self.warp.is_cuda)
         self.part_count = 1 if self.is_cuda else max(1, threads or os.cpu_count() or 1)
         self._graphs: dict[Any, Any] = {}
-        self._team = _Team(self.part_count - 1) if self.part_count > 1 else None
+        self._calling = Lock()
+        self._team = _Team(self.part_count) if self.part_count > 1 else None
 
     def record(
-        self, kernel: Any, inputs: Sequence[Any], outputs: Sequence[Any], *, per_element: int = 1
+        self,
+        kernel: Any,
+        inputs: Sequence[Any],
+        outputs: Sequence[Any],
+        *,
+        per_element: int = 1,
+        smallest_part: int = SMALLEST_PART,
     ) -> Phase:
         """Record the launch of `kernel`, split over the threads; `Phase.resize` sets its size."""
         parts = [
             wp.launch(kernel, 1, [0, *inputs], list(outputs), device=self.warp, record_cmd=True)
             for _ in range(self.part_count)
         ]
-        return Phase(parts, per_element)
+        return Phase(parts, per_element, smallest_part)
 
     def run(self, phases: Sequence[Phase], times: int = 1) -> None:
         """Run the phases one after the other, `times` times over.
@@ -94,7 +109,16 @@ class Device:
                 for phase in phases:
                     phase.parts[0].launch()
         else:
-            self._team.run(phases, times)
+            self._run_on_team(phases, times)
+
+    def _run_on_team(self, phases: Sequence[Phase], times: int) -> None:
+        with self._calling:
+            try:
+                self._team.run(phases, times)
+            except BaseException:
+                # an interrupt has left the team out of step: the next caller needs a new one
+                self._team = _Team(self.part_count)
+                raise
 
     def _run_on_cuda(self, phases: Sequence[Phase], times: int) -> None:
         if times == 1:
@@ -140,39 +164,75 @@ class Device:
 
 
 class _Team:
-    """Threads that run the parts of a phase beside the calling thread."""
+    """The calling thread and others beside it that run a sequence of phases in step.
+
+    Each thread runs its own part of every phase, and all meet between two phases. Whoever comes
+    last opens the gates and goes on at once, so a phase costs one waking up and not two, as it
+    would with a foreman who hands out parts. Gates are plain locks: nobody waits busily.
+    """
 
     def __init__(self, size: int) -> None:
-        self._lock = Lock()
-        self._done = Semaphore(0)
-        self._queues: list[SimpleQueue[Any]] = [SimpleQueue() for _ in range(size)]
-        for queue in self._queues:
-            Thread(target=self._work, args=(queue,), daemon=True, name="trimotion-part").start()
-
-    def _work(self, queue: SimpleQueue[Any]) -> None:
-        while True:
-            part = queue.get()
-            part.launch()
-            self._done.release()
+        self._size = size
+        self._counting = Lock()
+        self._arrived = 0
+        self._job: tuple[Sequence[Phase], int] = ((), 0)
+        self._starts = [Lock() for _ in range(size)]
+        self._gates = [Lock() for _ in range(size)]
+        for lock in self._starts + self._gates:
+            lock.acquire()
+        for number in range(1, size):
+            Thread(target=self._work, args=(number,), daemon=True, name="trimotion-part").start()
 
     def run(self, phases: Sequence[Phase], times: int) -> None:
         """Run phases one after the other, the parts of each at once."""
-        with self._lock:
-            for _ in range(times):
-                for phase in phases:
-                    self._run_phase(phase)
+        self._job = (phases, times)
+        if times and not all(phase.is_whole for phase in phases):
+            for start in self._starts[1:]:
+                start.release()
+        self._run_parts(0)
 
-    def _run_phase(self, phase: Phase) -> None:
-        busy = [
-            (queue, part)
-            for queue, part in zip(self._queues, phase.parts[1:], strict=True)
-            if part.bounds.size > 0
+    def _work(self, number: int) -> None:
+        while True:
+            self._starts[number].acquire()
+            self._run_parts(number)
+
+    def _run_parts(self, number: int) -> None:
+        phases, times = self._job
+        whole = [phase.is_whole for phase in phases]
+        # whole phases in a row are the caller's own: between them there is nobody to wait for
+        steps = [
+            (phase.parts[number], not (whole[n] and whole[n - 1])) for n, phase in enumerate(phases)
         ]
-        for queue, part in busy:
-            queue.put(part)
-        phase.parts[0].launch()
-        for _ in busy:
-            self._done.acquire()
+        begun = False
+        for _ in range(times):
+            for part, is_shared in steps:
+                if is_shared and begun:
+                    self._meet(number)
+                begun = True
+                if part.bounds.size > 0:
+                    part.launch()
+        if not whole[-1]:
+            self._meet(number)
+
+    def _meet(self, number: int) -> None:
+        """Wait until every thread of the team has come here."""
+        with self._counting:
+            self._arrived = (self._arrived + 1) % self._size
+            is_last = self._arrived == 0
+        if is_last:
+            for other, gate in enumerate(self._gates):
+                if other != number:
+                    gate.release()
+        else:
+            self._gates[number].acquire()
+
+
+def _warp_device(name: str) -> Any:
+    try:
+        return wp.get_device(name)
+    except Exception as error:  # Warp raises several types for an unknown device
+        found = ", ".join(device.alias for device in wp.get_devices())
+        raise OptionError(f"--device {name}: no such device; use one of: auto, {found}") from error
 
 
 def _start_warp() -> None:

@@ -13,61 +13,100 @@ import warp as wp
 
 from warp_kernels.color_model import ColorModel
 from warp_kernels.device import Device, Phase
-from warp_kernels.moments import area_sums_left_of, color_sums_left_of, moment_types
-from warp_kernels.raster import SUBPIXELS, carry_of, to_fixed, walk_edge
-from warp_kernels.variants import EDGE_VERSIONS, displacement
+from warp_kernels.moments import area_settler, color_settler, moment_types, row_adders
+from warp_kernels.raster import SUBPIXELS, column_of, to_fixed, walk_edge
+from warp_kernels.variants import EDGE_VERSIONS, end_displacement
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 
+EDGE_OPTIONS = {
+    "enable_backward": False,
+    "fuse_fp": False,
+    "cpu_compiler_flags": "-march=native -fno-vectorize -mllvm=-inline-threshold=9000"
+    " -mllvm=-inline-cold-callsite-threshold=3000 -mllvm=-slp-recursion-max-depth=12",
+}
+"""LLVM is to put several versions of an edge into one register, not several rows of one version,
+which it would have to gather from all over the table; for that it must look deeper than Warp lets
+it. The other flags are Warp's own."""
+
 
 @cache
-def _edge_kernel(model: ColorModel, versions: int) -> Any:
+def _edge_kernel(model: ColorModel, versions: int, lanes: int) -> Any:
+    """The kernel of which every thread walks `lanes` of an edge's versions side by side."""
     types = moment_types(model)
-    color_type, area_type, powers_type = types.color, types.area, types.powers
-    color_sums = color_sums_left_of(model)
-    area_sums = area_sums_left_of(model)
-    depth = model.table_depth
+    color_type, area_type = types.color, types.area
+    add_color, add_area = row_adders(model)
+    settle_color = color_settler(model)
+    settle_area = area_settler(model)
+    parts = versions // lanes
+    words = 4 * model.table_depth
+    int_lanes = wp.types.vector(length=lanes, dtype=wp.int32)
+    long_lanes = wp.types.vector(length=lanes, dtype=wp.int64)
+    color_lanes = wp.types.matrix(shape=(lanes, 4 * model.term_count), dtype=wp.int64)
+    area_lanes = wp.types.matrix(shape=(lanes, model.area_count), dtype=wp.int64)
 
-    @wp.kernel(enable_backward=False, module="unique")
+    @wp.kernel(module="unique", module_options=EDGE_OPTIONS)
     def sum_along_edges(
         begin: int,
         # In:
         vertices: wp.array(dtype=wp.vec2d),
         edges: wp.array(dtype=wp.vec2i),
         table: wp.array(dtype=wp.vec4i),
-        powers: wp.array(dtype=powers_type),
         width: int,
         height: int,
         # Out:
         color_out: wp.array2d(dtype=color_type),
         area_out: wp.array2d(dtype=area_type),
     ):
+        """Walk down all rows that any of the versions crosses."""
         number = begin + wp.tid()
-        edge = number / wp.static(versions)
-        version = number - edge * wp.static(versions)
+        edge = number / wp.static(parts)
+        first = (number - edge * wp.static(parts)) * wp.static(lanes)
         a = to_fixed(vertices[edges[edge][0]])
         b = to_fixed(vertices[edges[edge][1]])
-        if version >= 5:
-            b = b + displacement(version - 5, wp.static(SUBPIXELS))
-        elif version >= 1:
-            a = a + displacement(version - 1, wp.static(SUBPIXELS))
-        walk = walk_edge(a, b, height)
-        column = walk.column
-        remainder = walk.remainder
-        color = color_type()
-        area = area_type()
-        for row in range(walk.row_begin, walk.row_end):
-            clamped = wp.clamp(column, 0, width)
-            entry = (row * (width + 1) + clamped) * wp.static(depth)
-            y = wp.int64(row - height / 2)
-            color += color_sums(table, entry, y)
-            area += area_sums(powers[clamped], y)
-            remainder += walk.remainder_step
-            carry = carry_of(remainder, walk.denominator)
-            remainder -= carry * walk.denominator
-            column += walk.column_step + carry
-        color_out[edge, version] = wp.int64(walk.sign) * color
-        area_out[edge, version] = wp.int64(walk.sign) * area
+        position = long_lanes()
+        step = long_lanes()
+        row_begin = int_lanes()
+        row_count = int_lanes()
+        sign = int_lanes()
+        row = height
+        end = 0
+        for i in range(wp.static(lanes)):
+            start_move = end_displacement(first + i, 0, wp.static(SUBPIXELS))
+            end_move = end_displacement(first + i, 1, wp.static(SUBPIXELS))
+            walk = walk_edge(a + start_move, b + end_move, height)
+            position[i] = walk.position
+            step[i] = walk.step
+            row_begin[i] = walk.row_begin
+            row_count[i] = walk.row_end - walk.row_begin
+            sign[i] = walk.sign
+            row = wp.min(row, walk.row_begin)
+            end = wp.max(end, walk.row_end)
+        for i in range(wp.static(lanes)):
+            position[i] -= wp.int64(row_begin[i] - row) * step[i]
+        color = color_lanes()
+        area = area_lanes()
+        pitch = wp.uint64(width + 1) * wp.uint64(wp.static(4 * words))
+        address = table.ptr + wp.uint64(row) * pitch
+        while row < end:
+            # a plain array of one row: its index is never negative and its stride is known
+            line = wp.array(ptr=address, shape=(wp.static(words) * (width + 1),), dtype=int)
+            for i in range(wp.static(lanes)):
+                column = wp.max(wp.min(column_of(position[i]), width), 0)
+                # where a version does not cross the row it reads column 0: nothing lies left of it
+                inside = wp.uint32(row - row_begin[i]) < wp.uint32(row_count[i])
+                column = wp.where(inside, column, 0)
+                color[i] = add_color(color[i], line, column)
+                area[i] = add_area(area[i], column)
+            position += step
+            address += pitch
+            row += 1
+        last = wp.int64(end - height / 2)
+        middle = wp.int64(width / 2)
+        nothing = wp.int64(width >> 31)
+        for i in range(wp.static(lanes)):
+            color_out[edge, first + i] = settle_color(color[i], last, wp.int64(sign[i]), nothing)
+            area_out[edge, first + i] = settle_area(area[i], last, middle, wp.int64(sign[i]))
 
     return sum_along_edges
 
@@ -95,7 +134,7 @@ def record_edge_moments(
         vertices: Positions [px], [V] vec2d.
         edges: Vertex numbers of both ends, [E] vec2i.
         table: Prefix sums of the image, see `image_tables`.
-        powers: Sums of x^a left of each column, [W + 1] vectors.
+        powers: Not read: they follow from the columns.
         size: Width and height of the image [px].
         color_out: Colour moments, [E, versions] vectors of 4 K int64.
         area_out: Area moments, [E, versions] vectors of G int64.
@@ -105,6 +144,8 @@ def record_edge_moments(
     Deviation: sums run along edges of prefix tables instead of over fragments; the integers are
         the same.
     """
-    inputs = [vertices, edges, table, powers, size[0], size[1]]
-    kernel = _edge_kernel(model, versions)
-    return device.record(kernel, inputs, [color_out, area_out], per_element=versions)
+    inputs = [vertices, edges, table, size[0], size[1]]
+    # versions share vector registers on a CPU; on CUDA more threads are worth more
+    lanes = 1 if device.is_cuda else versions
+    kernel = _edge_kernel(model, versions, lanes)
+    return device.record(kernel, inputs, [color_out, area_out], per_element=versions // lanes)

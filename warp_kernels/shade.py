@@ -55,23 +55,33 @@ def _shade_kernel(shaders: tuple[Any, ...], samples: int) -> Any:
         parameters: wp.array(dtype=StyleParameters),
         triangle_of: wp.array2d(dtype=int),
         picture_per_sample: wp.vec2f,
+        top: int,
         # Out:
         canvas_out: wp.array2d(dtype=wp.vec3ub),
     ):
-        """Shade one row of the output."""
-        row = begin + wp.tid()
+        """Shade one row of a band of the output."""
+        band_row = begin + wp.tid()
+        row = top + band_row
         first_row = row * wp.static(samples)
+        width = triangle_of.shape[1]
+        # a plain array of the row's samples: its index is never negative and its stride is known
+        pitch = wp.uint64(width) * wp.uint64(wp.static(4 * samples))
+        line = wp.array(
+            ptr=triangle_of.ptr + wp.uint64(band_row) * pitch,
+            shape=(wp.static(samples) * width,),
+            dtype=int,
+        )
         here = Sample()
         here.row = row
         column = int(0)
         while column < canvas_out.shape[1]:
             first = column * wp.static(samples)
             here.column = column
-            here.triangle = triangle_of[first_row, first]
+            here.triangle = line[first]
             differing = int(0)
             for i in range(wp.static(samples)):
                 for j in range(wp.static(samples)):
-                    differing = differing | (triangle_of[first_row + i, first + j] ^ here.triangle)
+                    differing = differing | (line[i * width + first + j] ^ here.triangle)
             color = wp.vec3f()
             if differing == 0:
                 centre = wp.static(0.5 * samples)
@@ -83,7 +93,7 @@ def _shade_kernel(shaders: tuple[Any, ...], samples: int) -> Any:
             else:
                 for i in range(wp.static(samples)):
                     for j in range(wp.static(samples)):
-                        here.triangle = triangle_of[first_row + i, first + j]
+                        here.triangle = line[i * width + first + j]
                         here.position = wp.vec2f(
                             (float(first + j) + 0.5) * picture_per_sample[0],
                             (float(first_row + i) + 0.5) * picture_per_sample[1],
@@ -109,9 +119,10 @@ def record_shade(
     parameters: wp.array,
     triangle_of: wp.array,
     picture_per_sample: tuple[float, float],
+    top: int,
     canvas_out: wp.array,
 ) -> Phase:
-    """Prepare the launch that shades the output, row by row.
+    """Prepare the launch that shades a band of the output, row by row.
 
     Args:
         device: Where to run.
@@ -120,9 +131,10 @@ def record_shade(
         samples: Samples per output pixel, across and down each.
         scene: What shaders look at, a `Scene`.
         parameters: One `StyleParameters` per shader.
-        triangle_of: Triangle of every sample, see `gbuffer`.
+        triangle_of: Triangle of every sample of a band, see `gbuffer`.
         picture_per_sample: Size of a sample in the source picture [px], across and down.
+        top: The output row with which the band begins.
         canvas_out: Code values, [rows, columns] vec3ub.
     """
-    inputs = [scene, parameters, triangle_of, wp.vec2f(*picture_per_sample)]
+    inputs = [scene, parameters, triangle_of, wp.vec2f(*picture_per_sample), top]
     return device.record(_shade_kernel(shaders, samples), inputs, [canvas_out])

@@ -20,77 +20,54 @@ wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 SINGULAR = 1e-9
 """A pivot this small beside its diagonal entry makes the matrix singular: the constant is used."""
 
+SMALLEST_PART = 256
+"""Triangles whose variants take about as long as waking up a second thread."""
+
 SUMS = ("edges", "fragments")
 """The two ways to sum, see `edge_moments` and `fragments`."""
 
 
 @cache
-def _gather(model: ColorModel, sums: str) -> tuple[Any, Any]:
-    """Two wp.funcs: colour and area moments of one variant of one triangle.
-
-    With `edges` they add the three sides' sums; with `fragments` they read the sums as they are.
-    """
+def _side_sums(model: ColorModel) -> tuple[Any, Any]:
+    """Two wp.funcs: what a version of an edge adds to the sums of a triangle beside it."""
     types = moment_types(model)
     color_type, area_type = types.color, types.area
 
+    # (n ^ -1) + 1 is -n: a product of 64-bit integers would cost several times more
     @wp.func
-    def color_from_edges(
-        triangle: int,
-        variant: int,
-        sides: wp.array(dtype=wp.vec3i),
-        sums: wp.array2d(dtype=color_type),
-    ) -> color_type:
-        total = color_type()
-        for side in range(3):
-            code = sides[triangle][side]
-            sign = wp.int64(1 - 2 * (code & 1))
-            total += sign * sums[code >> 1, edge_version(variant, side, code & 1)]
-        return total
+    def side_color(sums: wp.array2d(dtype=color_type), side: int, version: int) -> color_type:
+        """Colour moments with the sign of the side."""
+        color = sums[side >> 1, version]
+        reversed_edge = wp.int64(side & 1)
+        for n in range(wp.static(4 * model.term_count)):
+            color[n] = (color[n] ^ -reversed_edge) + reversed_edge
+        return color
 
     @wp.func
-    def area_from_edges(
-        triangle: int,
-        variant: int,
-        sides: wp.array(dtype=wp.vec3i),
-        sums: wp.array2d(dtype=area_type),
-    ) -> area_type:
-        total = area_type()
-        for side in range(3):
-            code = sides[triangle][side]
-            sign = wp.int64(1 - 2 * (code & 1))
-            total += sign * sums[code >> 1, edge_version(variant, side, code & 1)]
-        return total
+    def side_area(sums: wp.array2d(dtype=area_type), side: int, version: int) -> area_type:
+        """Area moments with the sign of the side."""
+        area = sums[side >> 1, version]
+        reversed_edge = wp.int64(side & 1)
+        for n in range(wp.static(model.area_count)):
+            area[n] = (area[n] ^ -reversed_edge) + reversed_edge
+        return area
 
-    @wp.func
-    def color_as_is(
-        triangle: int,
-        variant: int,
-        sides: wp.array(dtype=wp.vec3i),
-        sums: wp.array2d(dtype=color_type),
-    ) -> color_type:
-        return sums[triangle, variant]
+    return side_color, side_area
 
-    @wp.func
-    def area_as_is(
-        triangle: int,
-        variant: int,
-        sides: wp.array(dtype=wp.vec3i),
-        sums: wp.array2d(dtype=area_type),
-    ) -> area_type:
-        return sums[triangle, variant]
 
-    if sums == "edges":
-        return color_from_edges, area_from_edges
-    return color_as_is, area_as_is
+@cache
+def _float_types(model: ColorModel) -> tuple[Any, Any]:
+    """The vector types of colour and area moments in float64."""
+    color = wp.types.vector(length=4 * model.term_count, dtype=wp.float64)
+    return color, wp.types.vector(length=model.area_count, dtype=wp.float64)
 
 
 @cache
 def _normal_equations(model: ColorModel) -> Any:
     """Functions that centre the sums on a triangle and factorise the normal equations."""
-    types = moment_types(model)
-    color_type, area_type = types.color, types.area
     terms = model.term_count
     exponents = model.exponents
+    color_type, area_type = _float_types(model)
     product = tuple(
         tuple(model.area_moment(a[0] + b[0], a[1] + b[1]) for b in exponents) for a in exponents
     )
@@ -99,11 +76,11 @@ def _normal_equations(model: ColorModel) -> Any:
     color_shifts = _shifts(exponents)
 
     @wp.func
-    def centre_area(sums: area_type, x: wp.int64, y: wp.int64) -> area_type:
+    def centre_area(sums: area_type, x: wp.float64, y: wp.float64) -> area_type:
         """Area moments with x and y counted from another origin; exact."""
         moved = area_type()
         for n in range(wp.static(len(area_shifts))):
-            factor = wp.int64(wp.static(area_shifts[n][2]))
+            factor = wp.float64(wp.static(float(area_shifts[n][2])))
             for _a in range(wp.static(area_shifts[n][3])):
                 factor *= -x
             for _b in range(wp.static(area_shifts[n][4])):
@@ -112,11 +89,11 @@ def _normal_equations(model: ColorModel) -> Any:
         return moved
 
     @wp.func
-    def centre_color(sums: color_type, x: wp.int64, y: wp.int64) -> color_type:
+    def centre_color(sums: color_type, x: wp.float64, y: wp.float64) -> color_type:
         """Colour moments with x and y counted from another origin; exact."""
         moved = color_type()
         for n in range(wp.static(len(color_shifts))):
-            factor = wp.int64(wp.static(color_shifts[n][2]))
+            factor = wp.float64(wp.static(float(color_shifts[n][2])))
             for _a in range(wp.static(color_shifts[n][3])):
                 factor *= -x
             for _b in range(wp.static(color_shifts[n][4])):
@@ -132,26 +109,27 @@ def _normal_equations(model: ColorModel) -> Any:
     def factorise(area: area_type) -> matrix_type:
         """Lower Cholesky factor; all zero but its first entry where the matrix is singular."""
         lower = matrix_type()
+        zero = wp.float64(0.0)
         regular = wp.float64(1.0)
         for j in range(wp.static(terms)):
-            diagonal = wp.float64(area[wp.static(product[j][j])])
+            diagonal = area[wp.static(product[j][j])]
             pivot = diagonal
             for k in range(j):
                 pivot -= lower[j, k] * lower[j, k]
-            if pivot <= wp.float64(wp.static(SINGULAR)) * diagonal:
-                regular = wp.float64(0.0)
-            root = wp.sqrt(wp.max(pivot, wp.float64(0.0)))
-            lower[j, j] = regular * root
+            regular = wp.where(pivot > wp.float64(wp.static(SINGULAR)) * diagonal, regular, zero)
+            root = wp.sqrt(wp.max(pivot, zero))
+            divisor = wp.where(root > zero, root, wp.float64(1.0))
+            lower[j, j] = root
             for i in range(wp.static(terms)):
-                if i > j and regular > wp.float64(0.0):
-                    below = wp.float64(area[wp.static(product[j][i])])
+                if wp.static(i > j):
+                    below = area[wp.static(product[j][i])]
                     for k in range(j):
                         below -= lower[i, k] * lower[j, k]
-                    lower[i, j] = below / root
-        if regular == wp.float64(0.0):
-            constant = lower[0, 0]
-            lower = matrix_type()
-            lower[0, 0] = constant
+                    lower[i, j] = below / divisor
+        for i in range(wp.static(terms)):
+            for j in range(wp.static(terms)):
+                if wp.static(i >= j and i > 0):
+                    lower[i, j] = wp.where(regular > zero, lower[i, j], zero)
         return lower
 
     return centre_area, centre_color, factorise, matrix_type
@@ -173,9 +151,13 @@ def _shifts(exponents: tuple[tuple[int, int], ...]) -> tuple[tuple[int, int, int
 
 @cache
 def fit_moments(model: ColorModel) -> Any:
-    """A wp.func: from one triangle's moments to a `Fit`, after forward substitution."""
-    types = moment_types(model)
-    color_type, area_type = types.color, types.area
+    """A wp.func: from one triangle's moments to a `Fit`, after forward substitution.
+
+    Without a branch, so that a processor can solve several variants at once. Sums stay below
+    2^53 (see `check_size`): as float64 they and their shifts to another origin are exact.
+    """
+    color_type, area_type = moment_types(model).color, moment_types(model).area
+    float_color_type, float_area_type = _float_types(model)
     terms = model.term_count
     centre_area, centre_color, factorise, matrix_type = _normal_equations(model)
     half_type = wp.types.matrix(shape=(terms, 3), dtype=wp.float64)
@@ -184,9 +166,9 @@ def fit_moments(model: ColorModel) -> Any:
     class Fit:
         """The least-squares colour of one triangle, after forward substitution."""
 
-        count: wp.int64
-        x: wp.int64
-        y: wp.int64
+        count: wp.float64
+        x: wp.float64
+        y: wp.float64
         energy: wp.float64
         lower: matrix_type
         half: half_type
@@ -195,42 +177,83 @@ def fit_moments(model: ColorModel) -> Any:
     def fit(color_sums: color_type, area_sums: area_type) -> Fit:
         """Factorise the normal equations and substitute forward."""
         result = Fit()
-        color = color_sums
-        area = area_sums
-        if area[0] < wp.int64(0):  # turned inside out: the error of what it covers all the same
-            area = -area
-            color = -color
+        # turned inside out: the error of what it covers all the same
+        sign = wp.where(area_sums[0] < wp.int64(0), wp.float64(-1.0), wp.float64(1.0))
+        color = float_color_type()
+        for n in range(wp.static(4 * terms)):
+            color[n] = sign * wp.float64(color_sums[n])
+        area = float_area_type()
+        for n in range(wp.static(model.area_count)):
+            area[n] = sign * wp.float64(area_sums[n])
         result.count = area[0]
-        if area[0] > wp.int64(0):
-            if wp.static(terms > 1):
-                result.x = area[1] / area[0]
-                result.y = area[2] / area[0]
-                area = centre_area(area, result.x, result.y)
-                color = centre_color(color, result.x, result.y)
-            result.lower = factorise(area)
-            explained = wp.float64(0.0)
-            for i in range(wp.static(terms)):
-                pivot = result.lower[i, i]
-                if pivot > wp.float64(0.0):
-                    for channel in range(3):
-                        value = wp.float64(color[4 * i + channel])
-                        for k in range(i):
-                            value -= result.lower[i, k] * result.half[k, channel]
-                        value = value / pivot
-                        result.half[i, channel] = value
-                        explained += value * value
-            square = wp.float64(color[wp.static(SQUARE)])
-            result.energy = wp.float64(0.5) * wp.max(square - explained, wp.float64(0.0))
+        if wp.static(terms > 1):
+            count = wp.max(area[0], wp.float64(1.0))
+            result.x = wp.trunc(area[1] / count)
+            result.y = wp.trunc(area[2] / count)
+            area = centre_area(area, result.x, result.y)
+            color = centre_color(color, result.x, result.y)
+        result.lower = factorise(area)
+        explained = wp.float64(0.0)
+        for i in range(wp.static(terms)):
+            pivot = result.lower[i, i]
+            some = pivot > wp.float64(0.0)
+            divisor = wp.where(some, pivot, wp.float64(1.0))
+            for channel in range(3):
+                value = color[4 * i + channel]
+                for k in range(i):
+                    value -= result.lower[i, k] * result.half[k, channel]
+                value = wp.where(some, value / divisor, wp.float64(0.0))
+                result.half[i, channel] = value
+                explained += value * value
+        left = wp.max(color[wp.static(SQUARE)] - explained, wp.float64(0.0))
+        result.energy = wp.float64(0.5) * left
         return result
 
     return fit
 
 
 @cache
-def _energy_kernel(model: ColorModel, sums: str) -> Any:
+def _edge_energy_kernel(model: ColorModel) -> Any:
     types = moment_types(model)
     color_type, area_type = types.color, types.area
-    color_of, area_of = _gather(model, sums)
+    side_color, side_area = _side_sums(model)
+    fit = fit_moments(model)
+
+    energies_type = wp.types.vector(length=TRIANGLE_VARIANTS, dtype=wp.float64)
+
+    @wp.kernel(enable_backward=False, module="unique")
+    def solve_variants(
+        begin: int,
+        # In:
+        sides: wp.array(dtype=wp.vec3i),
+        color_sums: wp.array2d(dtype=color_type),
+        area_sums: wp.array2d(dtype=area_type),
+        # Out:
+        energies_out: wp.array2d(dtype=wp.float64),
+    ):
+        """Solve the variants of one triangle, in a loop that LLVM runs four at a time."""
+        triangle = begin + wp.tid()
+        side = sides[triangle]
+        energies = energies_type()
+        variant = int(0)
+        while variant < wp.static(TRIANGLE_VARIANTS):
+            color = color_type()
+            area = area_type()
+            for n in range(3):
+                version = edge_version(variant, n, side[n] & 1)
+                color += side_color(color_sums, side[n], version)
+                area += side_area(area_sums, side[n], version)
+            energies[variant] = fit(color, area).energy
+            variant += 1
+        for n in range(wp.static(TRIANGLE_VARIANTS)):
+            energies_out[triangle, n] = energies[n]
+
+    return solve_variants
+
+
+@cache
+def _fragment_energy_kernel(model: ColorModel) -> Any:
+    color_type, area_type = moment_types(model).color, moment_types(model).area
     fit = fit_moments(model)
 
     @wp.kernel(enable_backward=False, module="unique")
@@ -243,12 +266,12 @@ def _energy_kernel(model: ColorModel, sums: str) -> Any:
         # Out:
         energies_out: wp.array2d(dtype=wp.float64),
     ):
+        """Solve one variant of one triangle."""
         number = begin + wp.tid()
         triangle = number / wp.static(TRIANGLE_VARIANTS)
         variant = number - triangle * wp.static(TRIANGLE_VARIANTS)
-        color = color_of(triangle, variant, sides, color_sums)
-        area = area_of(triangle, variant, sides, area_sums)
-        energies_out[triangle, variant] = fit(color, area).energy
+        best = fit(color_sums[triangle, variant], area_sums[triangle, variant])
+        energies_out[triangle, variant] = best.energy
 
     return solve_variants
 
@@ -258,7 +281,7 @@ def _fit_kernel(model: ColorModel) -> Any:
     types = moment_types(model)
     color_type, area_type = types.color, types.area
     terms = model.term_count
-    color_of, area_of = _gather(model, "edges")
+    side_color, side_area = _side_sums(model)
     fit = fit_moments(model)
     shifts = _shifts(model.exponents)
 
@@ -277,13 +300,17 @@ def _fit_kernel(model: ColorModel) -> Any:
         counts_out: wp.array(dtype=wp.int64),
     ):
         triangle = begin + wp.tid()
-        color = color_of(triangle, 0, sides, color_sums)
-        best = fit(color, area_of(triangle, 0, sides, area_sums))
+        color = color_type()
+        area = area_type()
+        for n in range(3):
+            color += side_color(color_sums, sides[triangle][n], 0)
+            area += side_area(area_sums, sides[triangle][n], 0)
+        best = fit(color, area)
         energies_out[triangle] = best.energy
-        counts_out[triangle] = best.count
+        counts_out[triangle] = wp.int64(best.count)
         # from pixel numbers counted from the triangle's own middle to positions in the image
-        x = wp.float64(best.x + wp.int64(width / 2)) + wp.float64(0.5)
-        y = wp.float64(best.y + wp.int64(height / 2)) + wp.float64(0.5)
+        x = best.x + wp.float64(width / 2) + wp.float64(0.5)
+        y = best.y + wp.float64(height / 2) + wp.float64(0.5)
         for channel in range(3):
             for term in range(wp.static(terms)):
                 coefficients_out[triangle, channel, term] = wp.float64(0.0)
@@ -333,7 +360,10 @@ def record_energies(
         add up, as Eq. 12 needs).
     """
     inputs = [sides, color_sums, area_sums]
-    kernel = _energy_kernel(model, sums)
+    if sums == "edges":
+        kernel = _edge_energy_kernel(model)
+        return device.record(kernel, inputs, [energies_out], smallest_part=SMALLEST_PART)
+    kernel = _fragment_energy_kernel(model)
     return device.record(kernel, inputs, [energies_out], per_element=TRIANGLE_VARIANTS)
 
 

@@ -7,7 +7,7 @@ import warp as wp
 
 from warp_kernels.color_model import ColorModel
 from warp_kernels.moments import area_sums_left_of, color_sums_left_of, moment_types
-from warp_kernels.raster import carry_of, to_fixed, walk_edge
+from warp_kernels.raster import column_of, to_fixed, walk_edge
 from warp_kernels.solve import fit_moments
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
@@ -49,15 +49,12 @@ def triangle_energy(model: ColorModel) -> Any:
             sign = wp.int64(walk.sign)
             row = walk.row_begin
             while row < walk.row_end:
-                column = wp.clamp(walk.column, 0, width)
+                column = wp.clamp(column_of(walk.position), 0, width)
                 y = wp.int64(row - height / 2)
                 entry = (row * (width + 1) + column) * wp.static(depth)
                 color += sign * color_sums(table, entry, y)
                 area += sign * area_sums(powers[column], y)
-                walk.remainder += walk.remainder_step
-                carry = carry_of(walk.remainder, walk.denominator)
-                walk.remainder -= carry * walk.denominator
-                walk.column += walk.column_step + carry
+                walk.position += walk.step
                 row += 1
         return fit(color, area).energy
 
