@@ -315,7 +315,7 @@ def test_translated_clip_moves_vertices_by_the_translation(tmp_path: Path) -> No
         assert inner.sum() > 20
         away = np.linalg.norm(moved[inner] - place[inner] + step, axis=1)
         assert np.median(away) < 0.3
-        assert np.quantile(away, 0.9) < 1.0
+        assert np.quantile(away, 0.9) < 1.5
 
 
 def test_size_that_changes_the_shape(clip: Path, tmp_path: Path) -> None:

@@ -1,5 +1,7 @@
 """Vertices move downhill, within their borders, and never turn a triangle over."""
 
+from threading import Thread
+
 import numpy as np
 import pytest
 
@@ -164,3 +166,19 @@ def test_no_iteration_moves_nothing(device: str) -> None:
     np.testing.assert_array_equal(workspace.vertices(), mesh.vertices)
     workspace.iterate(5, trust=0.5, regularity=1e-3, dead_band=1.0)
     np.testing.assert_array_equal(workspace.vertices(), mesh.vertices)
+
+
+@pytest.mark.parametrize("sums", ["edges", "fragments"])
+@pytest.mark.parametrize("times", [0, 1, 2, 3])
+def test_any_number_of_iterations_ends_on_a_large_mesh(times: int, sums: str, device: str) -> None:
+    """Past bug: one iteration of a mesh that threads share never came to its end."""
+    mesh = random_mesh(211, 133, 300)
+    workspace = poisoned_workspace(Device(device, 2), waves(211, 133), mesh, CONSTANT, sums)
+    alone = poisoned_workspace(Device(device, 1), waves(211, 133), mesh, CONSTANT, sums)
+    steps = {"trust": 0.5, "regularity": 1e-3}
+    runner = Thread(target=workspace.iterate, args=(times,), kwargs=steps, daemon=True)
+    runner.start()
+    runner.join(30)
+    assert not runner.is_alive()
+    alone.iterate(times, **steps)
+    np.testing.assert_array_equal(workspace.vertices(), alone.vertices())

@@ -23,8 +23,8 @@ from warp_kernels.styles.gradient import Gradient
 
 SENTINEL = 7
 """Held by the output before anything is drawn."""
-SIZES = [(61, 47), (30, 23), (122, 94), (97, 31), (1, 1), (3, 200)]
-"""Of the source, half, double, not proportional, tiny, narrow [px]."""
+SIZES = [(61, 47), (30, 23), (122, 94), (97, 31), (1, 1), (3, 200), (701, 499)]
+"""Of the source, half, double, not proportional, tiny, narrow, drawn in several bands [px]."""
 
 
 def draw(

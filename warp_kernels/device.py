@@ -102,6 +102,8 @@ class Device:
 
         On CUDA a repeated sequence is captured in a graph: no host round trip inside.
         """
+        if times == 0:
+            return  # the team would wait for threads that were never started
         if self.is_cuda:
             self._run_on_cuda(phases, times)
         elif self._team is None:
