@@ -46,8 +46,8 @@ class Canvas:
         columns = width * self.samples
         self._band = max(1, min(height, BAND_SAMPLES // (columns * self.samples)))
         band = (self._band * self.samples, columns)
-        self._triangle_of = wp.empty(band, dtype=int, device=device.warp)
-        self._pixels = wp.empty((height, width), dtype=wp.vec3ub, device=device.warp)
+        self._triangle_of = device.empty(band, int)
+        self._pixels = device.empty((height, width), wp.vec3ub)
         self._edge_count = wp.zeros(1, dtype=int, device=device.warp)
         self._line_width = max((style.line_width for style in styles), default=0.0)
         shape = (height, width) if self._line_width else (1, 1)
@@ -98,7 +98,7 @@ class Canvas:
             self.device.write(array, values)
         phases = []
         if self._line_width:
-            self._coverage.zero_()
+            self.device.clear(self._coverage)
             self._edge_drawing.resize(-(-self.output[1] // BAND), per_element=len(edges))
             phases.append(self._edge_drawing)
         for top, filling, shading in self._bands:
@@ -162,4 +162,4 @@ class Canvas:
         return filling, shading
 
     def _empty(self, shape: Any, dtype: Any) -> wp.array:
-        return wp.empty(shape, dtype=dtype, device=self.device.warp)
+        return self.device.empty(shape, dtype)

@@ -110,7 +110,7 @@ def limited(
 
 @wp.kernel(enable_backward=False)
 def descend(
-    begin: int,
+    span: wp.array(dtype=wp.vec2i),
     # In:
     vertices: wp.array(dtype=wp.vec2d),
     triangles: wp.array(dtype=wp.vec3i),
@@ -126,7 +126,9 @@ def descend(
     vertices_out: wp.array(dtype=wp.vec2d),
 ):
     """Move one vertex once."""
-    vertex = begin + wp.tid()
+    vertex = span[0][0] + wp.tid()
+    if vertex >= span[0][1]:
+        return
     trust = controls[0]
     regularity = controls[1]
     here = vertices[vertex]

@@ -1,27 +1,36 @@
 """Where kernels run: a CUDA device, or the CPU with all its cores.
 
-Warp runs a CPU kernel on the calling thread but lets go of the interpreter lock meanwhile, so a
-launch is recorded as one part per core, over disjoint ranges, and a small team of threads runs
-the parts at once. On CUDA a launch has one part, and a round of iterations is captured in a graph.
+Launches are recorded once and captured into graphs, which Warp replays without the interpreter.
+On CUDA a sequence of phases is one graph. On the CPU Warp runs a kernel on the calling thread, so
+a launch is recorded as one part per core, over disjoint ranges; every thread of a team replays a
+graph of its own parts, and they meet between two phases.
 
-Every kernel's first parameter is `begin`, the first element of its part.
+Every kernel's first parameter is `span`, the first element of its part and the one past its last,
+in device memory: a graph outlives changes of the mesh as long as no part outgrows its launch.
 """
 
 import os
 import sys
 from collections.abc import Sequence
-from threading import Lock, Thread
+from functools import partial
+from threading import Lock, RLock, Thread
 from typing import Any
 
 import numpy as np
 import warp as wp
 
 from warp_kernels.errors import OptionError
+from warp_kernels.meet import STRIDE, address_of_yield, meet
 
 SMALLEST_PART = 16
 """Below this many elements a second thread costs more than it saves."""
 MOST_GRAPHS = 64
-"""Captured sequences kept: a new number of triangles needs a new one."""
+"""Captured sequences kept: a much larger mesh needs a new one."""
+STEPS_PER_OCTAVE = 8
+"""Launch sizes between a power of two and the next: a part that grows a little keeps its size."""
+
+WARP = RLock()
+"""Held by whoever uses Warp: its CPU capture records the launches of every thread."""
 
 
 class Phase:
@@ -29,22 +38,24 @@ class Phase:
 
     Args:
         parts: Recorded Warp launches of one kernel, to be spread over disjoint ranges.
+        spans: The device array of each part that holds its range, [1] vec2i.
         per_element: Kernel threads per element.
         smallest_part: Elements below which a second part costs more than it saves.
     """
 
     def __init__(
-        self, parts: Sequence[Any], per_element: int, smallest_part: int = SMALLEST_PART
+        self, parts: Sequence[Any], spans: Sequence[wp.array], per_element: int, smallest_part: int
     ) -> None:
         self.parts = tuple(parts)
         self.count = 0
+        self._spans = tuple(spans)
         self._per_element = per_element
         self._smallest_part = smallest_part
 
     @property
-    def is_whole(self) -> bool:
-        """Whether the first part does everything."""
-        return all(part.bounds.size == 0 for part in self.parts[1:])
+    def shape(self) -> tuple[int, ...]:
+        """Size of each part's launch, at least that of its range."""
+        return tuple(int(part.bounds.size) for part in self.parts)
 
     def resize(self, count: int, *, per_element: int | None = None) -> None:
         """Spread `count` elements over the parts, of `per_element` threads if that changes."""
@@ -52,10 +63,12 @@ class Phase:
             self._per_element = per_element
         self.count = count
         share = max(-(-count // len(self.parts)), self._smallest_part)
-        for number, part in enumerate(self.parts):
+        for number, (part, span) in enumerate(zip(self.parts, self._spans, strict=True)):
             begin = min(number * share, count)
-            part.set_param_at_index(0, begin * self._per_element)
-            part.set_dim(min(share, count - begin) * self._per_element)
+            end = min(begin + share, count)
+            ends = np.array([[begin, end]], dtype=np.int32) * self._per_element
+            span.assign(ends)
+            part.set_dim(_launch_size((end - begin) * self._per_element))
 
 
 class Device:
@@ -77,9 +90,7 @@ class Device:
         self.warp = _warp_device(name)
         self.is_cuda = bool(self.warp.is_cuda)
         self.part_count = 1 if self.is_cuda else max(1, threads or os.cpu_count() or 1)
-        self._graphs: dict[Any, Any] = {}
-        self._calling = Lock()
-        self._team = _Team(self.part_count) if self.part_count > 1 else None
+        self._team = Team(self.warp, self.part_count)
 
     def record(
         self,
@@ -91,63 +102,51 @@ class Device:
         smallest_part: int = SMALLEST_PART,
     ) -> Phase:
         """Record the launch of `kernel`, split over the threads; `Phase.resize` sets its size."""
-        parts = [
-            wp.launch(kernel, 1, [0, *inputs], list(outputs), device=self.warp, record_cmd=True)
-            for _ in range(self.part_count)
-        ]
-        return Phase(parts, per_element, smallest_part)
+        with WARP:
+            spans = [wp.zeros(1, dtype=wp.vec2i, device=self.warp) for _ in range(self.part_count)]
+            parts = [
+                wp.launch(
+                    kernel, 1, [span, *inputs], list(outputs), device=self.warp, record_cmd=True
+                )
+                for span in spans
+            ]
+        return Phase(parts, spans, per_element, smallest_part)
 
     def run(self, phases: Sequence[Phase], times: int = 1) -> None:
-        """Run the phases one after the other, `times` times over.
+        """Run the phases one after the other, `times` times over, without the interpreter.
 
-        On CUDA a repeated sequence is captured in a graph: no host round trip inside.
+        Args:
+            phases: What to run.
+            times: How often; may be 0.
         """
         if times == 0:
-            return  # the team would wait for threads that were never started
-        if self.is_cuda:
-            self._run_on_cuda(phases, times)
-        elif self._team is None:
-            for _ in range(times):
-                for phase in phases:
-                    phase.parts[0].launch()
-        else:
-            self._run_on_team(phases, times)
-
-    def _run_on_team(self, phases: Sequence[Phase], times: int) -> None:
-        with self._calling:
+            return
+        with WARP:
             try:
                 self._team.run(phases, times)
             except BaseException:
                 # an interrupt has left the team out of step: the next caller needs a new one
-                self._team = _Team(self.part_count)
+                self._team.abandon()
+                self._team = Team(self.warp, self.part_count)
                 raise
 
-    def _run_on_cuda(self, phases: Sequence[Phase], times: int) -> None:
-        if times == 1:
-            for phase in phases:
-                phase.parts[0].launch()
-            return
-        graph = self._graph(phases)
-        for _ in range(times):
-            wp.capture_launch(graph)
+    def empty(self, shape: Any, dtype: Any) -> wp.array:
+        """A new device array; only workspaces ask for one."""
+        with WARP:
+            return wp.empty(shape, dtype=dtype, device=self.warp)
 
-    def _graph(self, phases: Sequence[Phase]) -> Any:
-        key = tuple((id(phase), phase.count) for phase in phases)
-        if key not in self._graphs:
-            if len(self._graphs) >= MOST_GRAPHS:
-                self._graphs.clear()
-            with wp.ScopedCapture(device=self.warp) as capture:
-                for phase in phases:
-                    phase.parts[0].launch()
-            self._graphs[key] = (capture.graph, tuple(phases))  # the phases must outlive their ids
-        return self._graphs[key][0]
+    def clear(self, array: wp.array) -> None:
+        """Fill a device array with zeros."""
+        with WARP:
+            array.zero_()
 
     def write(self, array: wp.array, values: np.ndarray) -> None:
         """Copy host values into the beginning of a device array."""
         if self.is_cuda:
-            source = wp.array(values, dtype=array.dtype, device="cpu")
-            wp.copy(array, source, count=source.size)
-            self.synchronize()  # the host values may be gone before the copy is done
+            with WARP:
+                source = wp.array(values, dtype=array.dtype, device="cpu")
+                wp.copy(array, source, count=source.size)
+                self.synchronize()  # the host values may be gone before the copy is done
         else:
             array.numpy()[: len(values)] = values
 
@@ -165,76 +164,93 @@ class Device:
         return f"Device({self.name!r}, threads={self.part_count})"
 
 
-class _Team:
-    """The calling thread and others beside it that run a sequence of phases in step.
+class Team:
+    """The calling thread and others beside it that replay captured phases in step.
 
-    Each thread runs its own part of every phase, and all meet between two phases. Whoever comes
-    last opens the gates and goes on at once, so a phase costs one waking up and not two, as it
-    would with a foreman who hands out parts. Gates are plain locks: nobody waits busily.
+    Args:
+        device: Warp's device.
+        size: Threads, the calling one included.
     """
 
-    def __init__(self, size: int) -> None:
+    def __init__(self, device: Any, size: int) -> None:
+        self._device = device
         self._size = size
-        self._counting = Lock()
-        self._arrived = 0
-        self._job: tuple[Sequence[Phase], int] = ((), 0)
-        self._starts = [Lock() for _ in range(size)]
-        self._gates = [Lock() for _ in range(size)]
-        for lock in self._starts + self._gates:
-            lock.acquire()
+        self._graphs: dict[Any, Any] = {}
+        self._job: tuple[list[Any], int] = ([], 0)
+        self._flags = wp.zeros((size + 1) * STRIDE, dtype=int, device=device)
+        self._meetings: list[Any] = []
+        if size > 1:
+            pass_on = address_of_yield()
+            self._meetings = [
+                wp.launch(
+                    meet, 1, [number, size, pass_on, self._flags], device=device, record_cmd=True
+                )
+                for number in range(size)
+            ]
+        self._starts = [_closed_lock() for _ in range(size)]
         for number in range(1, size):
-            Thread(target=self._work, args=(number,), daemon=True, name="trimotion-part").start()
+            work = partial(_replay_forever, self, number)
+            Thread(target=work, daemon=True, name="trimotion-part").start()
 
     def run(self, phases: Sequence[Phase], times: int) -> None:
-        """Run phases one after the other, the parts of each at once."""
-        self._job = (phases, times)
-        if times and not all(phase.is_whole for phase in phases):
-            for start in self._starts[1:]:
-                start.release()
-        self._run_parts(0)
+        """Replay phases `times` times over, the parts of each phase at once."""
+        self._job = (self._graphs_of(phases), times)
+        for start in self._starts[1:]:
+            start.release()
+        self.replay(0)
 
-    def _work(self, number: int) -> None:
-        while True:
-            self._starts[number].acquire()
-            self._run_parts(number)
-
-    def _run_parts(self, number: int) -> None:
-        phases, times = self._job
-        whole = [phase.is_whole for phase in phases]
-        # whole phases in a row are the caller's own: between them there is nobody to wait for
-        steps = [
-            (phase.parts[number], not (whole[n] and whole[n - 1])) for n, phase in enumerate(phases)
-        ]
-        begun = False
+    def replay(self, number: int) -> None:
+        """Do one thread's part of the job; the last phase ends with a meeting as well."""
+        graphs, times = self._job
         for _ in range(times):
-            for part, is_shared in steps:
-                if is_shared and begun:
-                    self._meet(number)
-                begun = True
+            wp.capture_launch(graphs[number])
+
+    def wait_for_start(self, number: int) -> None:
+        """Sleep until there is a job for a thread."""
+        self._starts[number].acquire()
+
+    def abandon(self) -> None:
+        """Let nobody wait any more: the team is not used again."""
+        self._flags.fill_(1)
+
+    def _graphs_of(self, phases: Sequence[Phase]) -> list[Any]:
+        key = tuple((id(phase), phase.shape) for phase in phases)
+        if key not in self._graphs:
+            if len(self._graphs) >= MOST_GRAPHS:
+                self._graphs.clear()
+            graphs = [self._capture(phases, number) for number in range(self._size)]
+            self._graphs[key] = (graphs, tuple(phases))  # the phases must outlive their ids
+        return self._graphs[key][0]
+
+    def _capture(self, phases: Sequence[Phase], number: int) -> Any:
+        with wp.ScopedCapture(device=self._device) as capture:
+            for phase in phases:
+                part = phase.parts[number]
                 if part.bounds.size > 0:
                     part.launch()
-        if not whole[-1]:
-            self._meet(number)
-
-    def _meet(self, number: int) -> None:
-        """Wait until every thread of the team has come here."""
-        with self._counting:
-            self._arrived = (self._arrived + 1) % self._size
-            is_last = self._arrived == 0
-        if is_last:
-            for other, gate in enumerate(self._gates):
-                if other != number:
-                    gate.release()
-        else:
-            self._gates[number].acquire()
+                if self._meetings:
+                    self._meetings[number].launch()
+        return capture.graph
 
 
-def _warp_device(name: str) -> Any:
-    try:
-        return wp.get_device(name)
-    except Exception as error:  # Warp raises several types for an unknown device
-        found = ", ".join(device.alias for device in wp.get_devices())
-        raise OptionError(f"--device {name}: no such device; use one of: auto, {found}") from error
+def _replay_forever(team: Team, number: int) -> None:
+    while True:
+        team.wait_for_start(number)
+        team.replay(number)
+
+
+def _closed_lock() -> Lock:
+    lock = Lock()
+    lock.acquire()
+    return lock
+
+
+def _launch_size(needed: int) -> int:
+    """A launch size of a coarse grid that holds `needed` threads."""
+    if needed == 0:
+        return 0
+    step = max(1, (1 << (needed - 1).bit_length()) // (2 * STEPS_PER_OCTAVE))
+    return -(-needed // step) * step
 
 
 def _start_warp() -> None:

@@ -29,7 +29,7 @@ def line_coverage(distance: float, half_width: float) -> float:
 
 @wp.kernel(enable_backward=False)
 def cover_edges(
-    begin: int,
+    span: wp.array(dtype=wp.vec2i),
     # In:
     vertices: wp.array(dtype=wp.vec2d),
     edges: wp.array(dtype=wp.vec2i),
@@ -40,7 +40,9 @@ def cover_edges(
     coverage_out: wp.array2d(dtype=float),
 ):
     """Draw one edge into one band of rows."""
-    number = begin + wp.tid()
+    number = span[0][0] + wp.tid()
+    if number >= span[0][1]:
+        return
     band = number / edge_count[0]
     edge = edges[number - band * edge_count[0]]
     first = wp.cw_mul(vertices[edge[0]], scale)

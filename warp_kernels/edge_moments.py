@@ -47,7 +47,7 @@ def _edge_kernel(model: ColorModel, versions: int, lanes: int) -> Any:
 
     @wp.kernel(module="unique", module_options=EDGE_OPTIONS)
     def sum_along_edges(
-        begin: int,
+        span: wp.array(dtype=wp.vec2i),
         # In:
         vertices: wp.array(dtype=wp.vec2d),
         edges: wp.array(dtype=wp.vec2i),
@@ -59,7 +59,9 @@ def _edge_kernel(model: ColorModel, versions: int, lanes: int) -> Any:
         area_out: wp.array2d(dtype=area_type),
     ):
         """Walk down all rows that any of the versions crosses."""
-        number = begin + wp.tid()
+        number = span[0][0] + wp.tid()
+        if number >= span[0][1]:
+            return
         edge = number / wp.static(parts)
         first = (number - edge * wp.static(parts)) * wp.static(lanes)
         a = to_fixed(vertices[edges[edge][0]])

@@ -26,7 +26,7 @@ def _fragment_kernel(model: ColorModel) -> Any:
 
     @wp.kernel(enable_backward=False, module="unique")
     def sum_fragments(
-        begin: int,
+        span: wp.array(dtype=wp.vec2i),
         # In:
         vertices: wp.array(dtype=wp.vec2d),
         triangles: wp.array(dtype=wp.vec3i),
@@ -36,7 +36,9 @@ def _fragment_kernel(model: ColorModel) -> Any:
         color_out: wp.array2d(dtype=color_type),
         area_out: wp.array2d(dtype=area_type),
     ):
-        number = begin + wp.tid()
+        number = span[0][0] + wp.tid()
+        if number >= span[0][1]:
+            return
         triangle = number / wp.static(TRIANGLE_VARIANTS)
         variant = number - triangle * wp.static(TRIANGLE_VARIANTS)
         corners = triangles[triangle]

@@ -18,7 +18,7 @@ _UNIT = wp.constant(SUBPIXELS)
 
 @wp.kernel(enable_backward=False)
 def fill_triangles(
-    begin: int,
+    span: wp.array(dtype=wp.vec2i),
     # In:
     vertices: wp.array(dtype=wp.vec2d),
     triangles: wp.array(dtype=wp.vec3i),
@@ -28,7 +28,9 @@ def fill_triangles(
     triangle_out: wp.array2d(dtype=int),
 ):
     """Fill the rows of one triangle, between its long edge and the two short ones."""
-    triangle = begin + wp.tid()
+    triangle = span[0][0] + wp.tid()
+    if triangle >= span[0][1]:
+        return
     width = triangle_out.shape[1]
     height = triangle_out.shape[0]
     corners = triangles[triangle]

@@ -23,13 +23,15 @@ def _table_kernel(model: ColorModel) -> Any:
 
     @wp.kernel(enable_backward=False, module="unique")
     def sum_rows(
-        begin: int,
+        span: wp.array(dtype=wp.vec2i),
         # In:
         pixels: wp.array2d(dtype=wp.vec3ub),
         # Out:
         table_out: wp.array(dtype=wp.vec4i),
     ):
-        row = begin + wp.tid()
+        row = span[0][0] + wp.tid()
+        if row >= span[0][1]:
+            return
         width = pixels.shape[1]
         entry = row * (width + 1) * wp.static(depth)
         left = wp.vec4i(0, 0, 0, 0)

@@ -49,7 +49,7 @@ def _shade_kernel(shaders: tuple[Any, ...], samples: int) -> Any:
 
     @wp.kernel(enable_backward=False, module="unique")
     def shade(
-        begin: int,
+        span: wp.array(dtype=wp.vec2i),
         # In:
         scene: Scene,
         parameters: wp.array(dtype=StyleParameters),
@@ -60,7 +60,9 @@ def _shade_kernel(shaders: tuple[Any, ...], samples: int) -> Any:
         canvas_out: wp.array2d(dtype=wp.vec3ub),
     ):
         """Shade one row of a band of the output."""
-        band_row = begin + wp.tid()
+        band_row = span[0][0] + wp.tid()
+        if band_row >= span[0][1]:
+            return
         row = top + band_row
         first_row = row * wp.static(samples)
         width = triangle_of.shape[1]

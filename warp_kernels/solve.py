@@ -223,7 +223,7 @@ def _edge_energy_kernel(model: ColorModel) -> Any:
 
     @wp.kernel(enable_backward=False, module="unique")
     def solve_variants(
-        begin: int,
+        span: wp.array(dtype=wp.vec2i),
         # In:
         sides: wp.array(dtype=wp.vec3i),
         color_sums: wp.array2d(dtype=color_type),
@@ -232,7 +232,9 @@ def _edge_energy_kernel(model: ColorModel) -> Any:
         energies_out: wp.array2d(dtype=wp.float64),
     ):
         """Solve the variants of one triangle, in a loop that LLVM runs four at a time."""
-        triangle = begin + wp.tid()
+        triangle = span[0][0] + wp.tid()
+        if triangle >= span[0][1]:
+            return
         side = sides[triangle]
         energies = energies_type()
         variant = int(0)
@@ -258,7 +260,7 @@ def _fragment_energy_kernel(model: ColorModel) -> Any:
 
     @wp.kernel(enable_backward=False, module="unique")
     def solve_variants(
-        begin: int,
+        span: wp.array(dtype=wp.vec2i),
         # In:
         sides: wp.array(dtype=wp.vec3i),
         color_sums: wp.array2d(dtype=color_type),
@@ -267,7 +269,9 @@ def _fragment_energy_kernel(model: ColorModel) -> Any:
         energies_out: wp.array2d(dtype=wp.float64),
     ):
         """Solve one variant of one triangle."""
-        number = begin + wp.tid()
+        number = span[0][0] + wp.tid()
+        if number >= span[0][1]:
+            return
         triangle = number / wp.static(TRIANGLE_VARIANTS)
         variant = number - triangle * wp.static(TRIANGLE_VARIANTS)
         best = fit(color_sums[triangle, variant], area_sums[triangle, variant])
@@ -287,7 +291,7 @@ def _fit_kernel(model: ColorModel) -> Any:
 
     @wp.kernel(enable_backward=False, module="unique")
     def fit_colors(
-        begin: int,
+        span: wp.array(dtype=wp.vec2i),
         # In:
         sides: wp.array(dtype=wp.vec3i),
         color_sums: wp.array2d(dtype=color_type),
@@ -299,7 +303,9 @@ def _fit_kernel(model: ColorModel) -> Any:
         energies_out: wp.array(dtype=wp.float64),
         counts_out: wp.array(dtype=wp.int64),
     ):
-        triangle = begin + wp.tid()
+        triangle = span[0][0] + wp.tid()
+        if triangle >= span[0][1]:
+            return
         color = color_type()
         area = area_type()
         for n in range(3):

@@ -40,10 +40,10 @@ class Survey:
         device = self._workspace.device
         if len(twins) > self._capacity:
             self._capacity = 3 * self._workspace.capacity[1]
-            self._twins = wp.empty(self._capacity, dtype=int, device=device.warp)
-            self._corners = wp.empty(self._capacity, dtype=int, device=device.warp)
-            self._half_edges = wp.empty(self._capacity, dtype=int, device=device.warp)
-            self._gains = wp.empty(self._capacity, dtype=wp.float64, device=device.warp)
+            self._twins = device.empty(self._capacity, int)
+            self._corners = device.empty(self._capacity, int)
+            self._half_edges = device.empty(self._capacity, int)
+            self._gains = device.empty(self._capacity, wp.float64)
         device.write(self._twins, twins)
         device.write(self._corners, corners)
 

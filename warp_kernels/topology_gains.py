@@ -37,7 +37,7 @@ def _flip_kernel(model: ColorModel) -> Any:
 
     @wp.kernel(enable_backward=False, module="unique")
     def flip_gains(
-        begin: int,
+        span: wp.array(dtype=wp.vec2i),
         # In:
         half_edges: wp.array(dtype=int),
         twins: wp.array(dtype=int),
@@ -52,7 +52,9 @@ def _flip_kernel(model: ColorModel) -> Any:
         gains_out: wp.array(dtype=wp.float64),
     ):
         """What the energy loses if one edge is flipped."""
-        number = begin + wp.tid()
+        number = span[0][0] + wp.tid()
+        if number >= span[0][1]:
+            return
         side = half_edges[number]
         twin = twins[side]
         gains_out[number] = -wp.float64(wp.static(IMPOSSIBLE))
@@ -80,7 +82,7 @@ def _collapse_kernel(model: ColorModel) -> Any:
 
     @wp.kernel(enable_backward=False, module="unique")
     def collapse_costs(
-        begin: int,
+        span: wp.array(dtype=wp.vec2i),
         # In:
         half_edges: wp.array(dtype=int),
         corners: wp.array(dtype=int),
@@ -96,7 +98,9 @@ def _collapse_kernel(model: ColorModel) -> Any:
         costs_out: wp.array(dtype=wp.float64),
     ):
         """What the energy gains if the origin of one half-edge moves into its destination."""
-        number = begin + wp.tid()
+        number = span[0][0] + wp.tid()
+        if number >= span[0][1]:
+            return
         side = half_edges[number]
         origin = corners[side]
         goal = corners[corner_after(side)]
@@ -126,7 +130,7 @@ def _split_kernel(model: ColorModel) -> Any:
 
     @wp.kernel(enable_backward=False, module="unique")
     def split_gains(
-        begin: int,
+        span: wp.array(dtype=wp.vec2i),
         # In:
         half_edges: wp.array(dtype=int),
         twins: wp.array(dtype=int),
@@ -142,7 +146,9 @@ def _split_kernel(model: ColorModel) -> Any:
         gains_out: wp.array(dtype=wp.float64),
     ):
         """What the energy loses if one edge is split at a point between its ends."""
-        number = begin + wp.tid()
+        number = span[0][0] + wp.tid()
+        if number >= span[0][1]:
+            return
         side = half_edges[number]
         twin = twins[side]
         a = vertices[corners[side]]

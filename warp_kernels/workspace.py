@@ -294,4 +294,4 @@ class Workspace:
             phase.resize(vertices)
 
     def _empty(self, shape: Any, dtype: Any) -> wp.array:
-        return wp.empty(shape, dtype=dtype, device=self.device.warp)
+        return self.device.empty(shape, dtype)
