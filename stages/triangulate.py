@@ -27,7 +27,7 @@ REFINING_SHARE = 0.85
 """Part of a first frame's iterations during which the topology changes (the paper: 400 of 600)."""
 GROWING_SHARE = 0.6
 """Part of those after which the number of triangles is reached."""
-ROUND = 10
+ROUND = 8
 """Iterations between two looks at the topology of a first frame."""
 LAST_TRUST = 0.1
 """Trust region of the last iteration beside the first one's: it shrinks so that vertices settle."""
@@ -51,10 +51,10 @@ class TriangulateOptions:
         metadata={"help": "colour model that is optimised", "choices": tuple(COLOR_MODELS)},
     )
     iterations: int = field(
-        default=600, metadata={"help": "optimiser iterations for the first frame of a shot"}
+        default=300, metadata={"help": "optimiser iterations for the first frame of a shot"}
     )
     frame_iterations: int = field(
-        default=12, metadata={"help": "optimiser iterations for each later frame"}
+        default=10, metadata={"help": "optimiser iterations for each later frame"}
     )
     topology: str = field(
         default="energy",

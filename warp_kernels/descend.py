@@ -3,6 +3,7 @@
 import warp as wp
 
 from warp_kernels.device import Device, Phase
+from warp_kernels.raster import to_fixed
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 
@@ -124,6 +125,7 @@ def descend(
     memory_out: wp.array(dtype=wp.vec4d),
     # Out:
     vertices_out: wp.array(dtype=wp.vec2d),
+    moved_out: wp.array(dtype=int),
 ):
     """Move one vertex once."""
     vertex = span[0][0] + wp.tid()
@@ -152,7 +154,10 @@ def descend(
         memory[axis + 2] = s
         step[axis] = s
     memory_out[vertex] = memory
-    vertices_out[vertex] = here + limited(step, trust, around.height, controls[2])
+    there = here + limited(step, trust, around.height, controls[2])
+    vertices_out[vertex] = there
+    away = to_fixed(there) - to_fixed(here)
+    moved_out[vertex] = wp.where(away[0] == 0 and away[1] == 0, 0, 1)
 
 
 def record_descent(
@@ -168,6 +173,7 @@ def record_descent(
     controls: wp.array,
     memory_out: wp.array,
     vertices_out: wp.array,
+    moved_out: wp.array,
 ) -> Phase:
     """Prepare the launch that moves every vertex once, out of place.
 
@@ -184,6 +190,7 @@ def record_descent(
         memory_out: Each vertex's own trust region per axis [px] and its last step [px], read and
             written, [V] vec4d.
         vertices_out: Positions after the step [px], [V] vec2d.
+        moved_out: 1 where the step changes what a vertex covers, else 0, [V].
 
     Source: Lawonn & Guenther (2018), Sec. 3.2 and 4.1, Eqs. 7-11.
     Deviation: a diagonal Newton step takes the place of a fixed step size, since the twelve
@@ -195,4 +202,4 @@ def record_descent(
     inputs = [
         vertices, triangles, energies, fan_offsets, fan_corners, freedom, anchors, controls,
     ]  # fmt: skip
-    return device.record(descend, inputs, [memory_out, vertices_out])
+    return device.record(descend, inputs, [memory_out, vertices_out, moved_out])

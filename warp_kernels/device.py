@@ -11,7 +11,7 @@ in device memory: a graph outlives changes of the mesh as long as no part outgro
 
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from threading import Lock, RLock, Thread
 from typing import Any
@@ -38,17 +38,21 @@ class Phase:
 
     Args:
         parts: Recorded Warp launches of one kernel, to be spread over disjoint ranges.
-        spans: The device array of each part that holds its range, [1] vec2i.
+        set_span: Writes the range of a part, by the part's number, into device memory.
         per_element: Kernel threads per element.
         smallest_part: Elements below which a second part costs more than it saves.
     """
 
     def __init__(
-        self, parts: Sequence[Any], spans: Sequence[wp.array], per_element: int, smallest_part: int
+        self,
+        parts: Sequence[Any],
+        set_span: Callable[[int, int, int], None],
+        per_element: int,
+        smallest_part: int,
     ) -> None:
         self.parts = tuple(parts)
-        self.count = 0
-        self._spans = tuple(spans)
+        self._size = (0, 0)
+        self._set_span = set_span
         self._per_element = per_element
         self._smallest_part = smallest_part
 
@@ -61,14 +65,15 @@ class Phase:
         """Spread `count` elements over the parts, of `per_element` threads if that changes."""
         if per_element is not None:
             self._per_element = per_element
-        self.count = count
+        if self._size == (count, self._per_element):
+            return
+        self._size = (count, self._per_element)
         share = max(-(-count // len(self.parts)), self._smallest_part)
-        for number, (part, span) in enumerate(zip(self.parts, self._spans, strict=True)):
-            begin = min(number * share, count)
-            end = min(begin + share, count)
-            ends = np.array([[begin, end]], dtype=np.int32) * self._per_element
-            span.assign(ends)
-            part.set_dim(_launch_size((end - begin) * self._per_element))
+        for number, part in enumerate(self.parts):
+            begin = min(number * share, count) * self._per_element
+            end = min((number + 1) * share, count) * self._per_element
+            self._set_span(number, begin, end)
+            part.set_dim(_launch_size(end - begin))
 
 
 class Device:
@@ -110,7 +115,19 @@ class Device:
                 )
                 for span in spans
             ]
-        return Phase(parts, spans, per_element, smallest_part)
+        return Phase(parts, self._span_writer(spans), per_element, smallest_part)
+
+    def _span_writer(self, spans: Sequence[wp.array]) -> Callable[[int, int, int], None]:
+        """A function that writes a part's range; on the CPU straight into its memory."""
+        if self.is_cuda:
+            return lambda number, begin, end: spans[number].assign([[begin, end]])
+        views = [span.numpy()[0] for span in spans]
+
+        def write(number: int, begin: int, end: int) -> None:
+            """Write the range of one part."""
+            views[number][:] = (begin, end)
+
+        return write
 
     def run(self, phases: Sequence[Phase], times: int = 1) -> None:
         """Run the phases one after the other, `times` times over, without the interpreter.

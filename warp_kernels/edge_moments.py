@@ -51,6 +51,7 @@ def _edge_kernel(model: ColorModel, versions: int, lanes: int) -> Any:
         # In:
         vertices: wp.array(dtype=wp.vec2d),
         edges: wp.array(dtype=wp.vec2i),
+        moved: wp.array(dtype=int),
         table: wp.array(dtype=wp.vec4i),
         width: int,
         height: int,
@@ -64,8 +65,11 @@ def _edge_kernel(model: ColorModel, versions: int, lanes: int) -> Any:
             return
         edge = number / wp.static(parts)
         first = (number - edge * wp.static(parts)) * wp.static(lanes)
-        a = to_fixed(vertices[edges[edge][0]])
-        b = to_fixed(vertices[edges[edge][1]])
+        ends = edges[edge]
+        if wp.static(versions > 1) and moved[ends[0]] + moved[ends[1]] == 0:
+            return  # the sums of an edge at rest still stand
+        a = to_fixed(vertices[ends[0]])
+        b = to_fixed(vertices[ends[1]])
         position = long_lanes()
         step = long_lanes()
         row_begin = int_lanes()
@@ -119,6 +123,7 @@ def record_edge_moments(
     *,
     vertices: wp.array,
     edges: wp.array,
+    moved: wp.array,
     table: wp.array,
     powers: wp.array,
     size: tuple[int, int],
@@ -135,6 +140,8 @@ def record_edge_moments(
         model: Fixes the moments.
         vertices: Positions [px], [V] vec2d.
         edges: Vertex numbers of both ends, [E] vec2i.
+        moved: 1 where a vertex has moved since the sums were taken, [V]; the nine versions of an
+            edge at rest are left as they are.
         table: Prefix sums of the image, see `image_tables`.
         powers: Not read: they follow from the columns.
         size: Width and height of the image [px].
@@ -146,7 +153,7 @@ def record_edge_moments(
     Deviation: sums run along edges of prefix tables instead of over fragments; the integers are
         the same.
     """
-    inputs = [vertices, edges, table, size[0], size[1]]
+    inputs = [vertices, edges, moved, table, size[0], size[1]]
     # versions share vector registers on a CPU; on CUDA more threads are worth more
     lanes = 1 if device.is_cuda else versions
     kernel = _edge_kernel(model, versions, lanes)

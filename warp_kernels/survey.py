@@ -1,8 +1,5 @@
 """Device arrays and launches that measure changes of topology over a workspace's mesh."""
 
-from functools import partial
-from typing import Any
-
 import numpy as np
 import warp as wp
 
@@ -29,6 +26,7 @@ class Survey:
         self._workspace = workspace
         self._least_height = least_height
         self._capacity = 0
+        self._phases: dict[tuple[str, int, int], Phase] = {}
 
     def load_topology(self, twins: np.ndarray, corners: np.ndarray) -> None:
         """Take in what the workspace does not know of its mesh.
@@ -40,6 +38,7 @@ class Survey:
         device = self._workspace.device
         if len(twins) > self._capacity:
             self._capacity = 3 * self._workspace.capacity[1]
+            self._phases.clear()  # they were recorded over the arrays that go now
             self._twins = device.empty(self._capacity, int)
             self._corners = device.empty(self._capacity, int)
             self._half_edges = device.empty(self._capacity, int)
@@ -49,39 +48,53 @@ class Survey:
 
     def flip_gains(self, half_edges: np.ndarray) -> np.ndarray:
         """Energy that each flip saves [code value^2 px], [N]; hugely negative if impossible."""
-        record = partial(record_flip_gains, twins=self._twins, gains_out=self._gains)
-        return self._measure(record, half_edges)
+        return self._measure("flip", half_edges)
 
     def collapse_costs(self, half_edges: np.ndarray) -> np.ndarray:
         """Energy that each collapse of an origin adds [code value^2 px], [N]; huge if barred."""
-        record = partial(
-            record_collapse_costs,
-            fan_offsets=self._workspace.fan_offsets,
-            fan_corners=self._workspace.fan_corners,
-            costs_out=self._gains,
-        )
-        return self._measure(record, half_edges)
+        return self._measure("collapse", half_edges)
 
-    def split_gains(self, half_edges: np.ndarray, share: float = 0.5) -> np.ndarray:
-        """Energy that each edge's split saves [code value^2 px], [N]; see `record_split_gains`."""
-        record = partial(record_split_gains, twins=self._twins, share=share, gains_out=self._gains)
-        return self._measure(record, half_edges)
+    def split_gains(self, half_edges: np.ndarray) -> np.ndarray:
+        """Energy that splitting each edge in the middle saves [code value^2 px], [N]."""
+        return self._measure("split", half_edges)
 
-    def _measure(self, record: Any, half_edges: np.ndarray) -> np.ndarray:
-        workspace = self._workspace
-        workspace.device.write(self._half_edges, half_edges)
-        phase: Phase = record(
-            workspace.device,
-            workspace.model,
-            half_edges=self._half_edges,
-            corners=self._corners,
-            vertices=workspace.standing,
-            energies=workspace.fit_energies,
-            table=workspace.table,
-            powers=workspace.powers,
-            height=workspace.size[1],
-            least_height=self._least_height,
-        )
+    def _measure(self, change: str, half_edges: np.ndarray) -> np.ndarray:
+        device = self._workspace.device
+        key = (change, self._workspace.generation, self._workspace.standing.ptr)
+        if key not in self._phases:
+            self._phases[key] = self._record(change)
+        phase = self._phases[key]
         phase.resize(len(half_edges))
-        workspace.device.run([phase])
-        return workspace.device.read(self._gains, len(half_edges))
+        device.write(self._half_edges, half_edges)
+        device.run([phase])
+        return device.read(self._gains, len(half_edges))
+
+    def _record(self, change: str) -> Phase:
+        workspace = self._workspace
+        common = {
+            "half_edges": self._half_edges,
+            "corners": self._corners,
+            "vertices": workspace.standing,
+            "energies": workspace.fit_energies,
+            "table": workspace.table,
+            "powers": workspace.powers,
+            "height": workspace.size[1],
+            "least_height": self._least_height,
+        }
+        device, model = workspace.device, workspace.model
+        if change == "flip":
+            return record_flip_gains(
+                device, model, twins=self._twins, gains_out=self._gains, **common
+            )
+        if change == "split":
+            return record_split_gains(
+                device, model, twins=self._twins, share=0.5, gains_out=self._gains, **common
+            )
+        return record_collapse_costs(
+            device,
+            model,
+            fan_offsets=workspace.fan_offsets,
+            fan_corners=workspace.fan_corners,
+            costs_out=self._gains,
+            **common,
+        )

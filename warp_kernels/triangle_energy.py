@@ -6,9 +6,9 @@ from typing import Any
 import warp as wp
 
 from warp_kernels.color_model import ColorModel
+from warp_kernels.fit import fit_moments
 from warp_kernels.moments import area_sums_left_of, color_sums_left_of, moment_types
 from warp_kernels.raster import column_of, to_fixed, walk_edge
-from warp_kernels.solve import fit_moments
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 

@@ -13,10 +13,11 @@ from warp_kernels.color_model import ColorModel
 from warp_kernels.descend import record_descent
 from warp_kernels.device import Device, Phase
 from warp_kernels.edge_moments import record_edge_moments
+from warp_kernels.fit import record_fit
 from warp_kernels.fragments import record_fragment_moments
 from warp_kernels.image_tables import record_image_tables
 from warp_kernels.moments import check_size, column_powers, moment_types
-from warp_kernels.solve import record_energies, record_fit
+from warp_kernels.solve import record_energies
 from warp_kernels.variants import EDGE_VERSIONS, TRIANGLE_VARIANTS
 
 FAR = 1e6
@@ -52,6 +53,8 @@ class Workspace:
         self._controls = self._empty(3, wp.float64)
         self._tables = record_image_tables(device, model, pixels=self._pixels, table_out=self.table)
         self._counts = (0, 0, 0)
+        self.generation = 0
+        """How often the arrays have moved: what was recorded over them before is void."""
         self._front = 0
         self._allocate(vertices=512, triangles=1024)
 
@@ -105,6 +108,7 @@ class Workspace:
         memory = np.zeros((len(vertices), 4))
         memory[:, :2] = FAR
         self.device.write(self._memory, memory)
+        self.device.write(self._moved, np.ones(len(vertices), dtype=np.int32))
         self._resize()
 
     def iterate(
@@ -179,6 +183,7 @@ class Workspace:
 
     def _allocate(self, *, vertices: int, triangles: int) -> None:
         self._capacity = (vertices, triangles)
+        self.generation += 1
         edges = vertices + triangles + 1  # Euler: E = V + T - 1 in a disc
         types = moment_types(self.model)
         rows = (edges, EDGE_VERSIONS)
@@ -193,6 +198,7 @@ class Workspace:
         self._freedom = self._empty(vertices, wp.vec2d)
         self._anchors = self._empty(vertices, wp.vec3d)
         self._memory = self._empty(vertices, wp.vec4d)
+        self._moved = self._empty(vertices, wp.int32)
         self._color_sums = self._empty(rows, types.color)
         self._area_sums = self._empty(rows, types.area)
         self._energies = self._empty((triangles, TRIANGLE_VARIANTS), wp.float64)
@@ -211,6 +217,8 @@ class Workspace:
             self.device,
             self.model,
             self.sums,
+            triangles=self.triangles,
+            moved=self._moved,
             sides=self._sides,
             color_sums=self._color_sums,
             area_sums=self._area_sums,
@@ -229,6 +237,7 @@ class Workspace:
                 controls=self._controls,
                 memory_out=self._memory,
                 vertices_out=self._vertices[1 - front],
+                moved_out=self._moved,
             )
             for front in (0, 1)
         ]
@@ -238,6 +247,7 @@ class Workspace:
                 self.model,
                 vertices=front,
                 edges=self._edges,
+                moved=self._moved,
                 color_out=self._fit_color_sums,
                 area_out=self._fit_area_sums,
                 versions=1,
@@ -274,6 +284,7 @@ class Workspace:
             self.model,
             vertices=vertices,
             edges=self._edges,
+            moved=self._moved,
             table=self.table,
             powers=self.powers,
             size=self.size,

@@ -1,0 +1,39 @@
+"""The three sides of a triangle, and the sums that each adds to the triangle's moments."""
+
+from functools import cache
+from typing import Any
+
+import warp as wp
+
+from warp_kernels.color_model import ColorModel
+from warp_kernels.moments import moment_types
+
+wp.set_module_options({"enable_backward": False, "fuse_fp": False})
+
+
+@cache
+def side_sums(model: ColorModel) -> tuple[Any, Any]:
+    """Two wp.funcs: what a version of an edge adds to the sums of a triangle beside it."""
+    types = moment_types(model)
+    color_type, area_type = types.color, types.area
+
+    # (n ^ -1) + 1 is -n: a product of 64-bit integers would cost several times more
+    @wp.func
+    def side_color(sums: wp.array2d(dtype=color_type), side: int, version: int) -> color_type:
+        """Colour moments with the sign of the side."""
+        color = sums[side >> 1, version]
+        reversed_edge = wp.int64(side & 1)
+        for n in range(wp.static(4 * model.term_count)):
+            color[n] = (color[n] ^ -reversed_edge) + reversed_edge
+        return color
+
+    @wp.func
+    def side_area(sums: wp.array2d(dtype=area_type), side: int, version: int) -> area_type:
+        """Area moments with the sign of the side."""
+        area = sums[side >> 1, version]
+        reversed_edge = wp.int64(side & 1)
+        for n in range(wp.static(model.area_count)):
+            area[n] = (area[n] ^ -reversed_edge) + reversed_edge
+        return area
+
+    return side_color, side_area
