@@ -34,7 +34,7 @@ LAST_TRUST = 0.1
 SPRING = 1500.0
 """Strength of the temporal term [code value^2]: a vertex leaves the flow's path where the picture
 pulls harder than noise does."""
-DEAD_BAND = 0.03
+DEAD_BAND = 0.1
 """Steps of later frames below this are not taken [px]: noise must not move what stands still."""
 
 
@@ -54,7 +54,7 @@ class TriangulateOptions:
         default=300, metadata={"help": "optimiser iterations for the first frame of a shot"}
     )
     frame_iterations: int = field(
-        default=10, metadata={"help": "optimiser iterations for each later frame"}
+        default=8, metadata={"help": "optimiser iterations for each later frame"}
     )
     topology: str = field(
         default="energy",

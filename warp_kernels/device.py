@@ -20,7 +20,7 @@ import numpy as np
 import warp as wp
 
 from warp_kernels.errors import OptionError
-from warp_kernels.meet import STRIDE, address_of_yield, meet
+from warp_kernels.meet import STRIDE, address_of_sleep, meet
 
 SMALLEST_PART = 16
 """Below this many elements a second thread costs more than it saves."""
@@ -197,10 +197,10 @@ class Team:
         self._flags = wp.zeros((size + 1) * STRIDE, dtype=int, device=device)
         self._meetings: list[Any] = []
         if size > 1:
-            pass_on = address_of_yield()
+            pause = address_of_sleep()
             self._meetings = [
                 wp.launch(
-                    meet, 1, [number, size, pass_on, self._flags], device=device, record_cmd=True
+                    meet, 1, [number, size, pause, self._flags], device=device, record_cmd=True
                 )
                 for number in range(size)
             ]

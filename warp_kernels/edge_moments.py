@@ -13,6 +13,7 @@ import warp as wp
 
 from warp_kernels.color_model import ColorModel
 from warp_kernels.device import Device, Phase
+from warp_kernels.image_tables import BLOCK_ROWS
 from warp_kernels.moments import area_settler, color_settler, moment_types, row_adders
 from warp_kernels.raster import SUBPIXELS, column_of, to_fixed, walk_edge
 from warp_kernels.variants import EDGE_VERSIONS, end_displacement
@@ -40,6 +41,7 @@ def _edge_kernel(model: ColorModel, versions: int, lanes: int) -> Any:
     settle_area = area_settler(model)
     parts = versions // lanes
     words = 4 * model.table_depth
+    block_words = BLOCK_ROWS * words
     int_lanes = wp.types.vector(length=lanes, dtype=wp.int32)
     long_lanes = wp.types.vector(length=lanes, dtype=wp.int64)
     color_lanes = wp.types.matrix(shape=(lanes, 4 * model.term_count), dtype=wp.int64)
@@ -92,11 +94,14 @@ def _edge_kernel(model: ColorModel, versions: int, lanes: int) -> Any:
             position[i] -= wp.int64(row_begin[i] - row) * step[i]
         color = color_lanes()
         area = area_lanes()
-        pitch = wp.uint64(width + 1) * wp.uint64(wp.static(4 * words))
-        address = table.ptr + wp.uint64(row) * pitch
+        pitch = wp.uint64(width + 1) * wp.uint64(wp.static(4 * block_words))
         while row < end:
-            # a plain array of one row: its index is never negative and its stride is known
-            line = wp.array(ptr=address, shape=(wp.static(words) * (width + 1),), dtype=int)
+            block = row / wp.static(BLOCK_ROWS)
+            inner = wp.uint64(row - block * wp.static(BLOCK_ROWS))
+            address = table.ptr + wp.uint64(block) * pitch
+            address += inner * wp.uint64(wp.static(4 * words))
+            # a plain array from the row on: its index is never negative and its stride is known
+            line = wp.array(ptr=address, shape=(wp.static(block_words) * (width + 1),), dtype=int)
             for i in range(wp.static(lanes)):
                 column = wp.max(wp.min(column_of(position[i]), width), 0)
                 # where a version does not cross the row it reads column 0: nothing lies left of it
@@ -105,7 +110,6 @@ def _edge_kernel(model: ColorModel, versions: int, lanes: int) -> Any:
                 color[i] = add_color(color[i], line, column)
                 area[i] = add_area(area[i], column)
             position += step
-            address += pitch
             row += 1
         last = wp.int64(end - height / 2)
         middle = wp.int64(width / 2)

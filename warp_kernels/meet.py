@@ -11,7 +11,7 @@ counter, not zero, tells everybody to wait no longer."""
 
 @wp.func_native("""
 #if !defined(__CUDA_ARCH__)
-    typedef void Yield(void);
+    typedef int Sleep(unsigned int);
     int* counters = (int*)flags_out.data;
     const int goal = __atomic_load_n(counters + 16 * number, __ATOMIC_RELAXED) + 1;
     __atomic_store_n(counters + 16 * number, goal, __ATOMIC_RELEASE);
@@ -19,13 +19,13 @@ counter, not zero, tells everybody to wait no longer."""
         int turns = 0;
         while (__atomic_load_n(counters + 16 * other, __ATOMIC_ACQUIRE) - goal < 0) {
             if (__atomic_load_n(counters + 16 * size, __ATOMIC_RELAXED)) return;
-            // after a short busy wait the core may be needed by a decoder or an encoder
-            if (++turns > 1000 && pass_on) ((Yield*)pass_on)();
+            // after a short busy wait the core is needed by a decoder or an encoder
+            if (++turns > 10000 && pause) ((Sleep*)pause)(20);
         }
     }
 #endif
 """)
-def wait_for_others(number: int, size: int, pass_on: wp.uint64, flags_out: wp.array(dtype=int)):
+def wait_for_others(number: int, size: int, pause: wp.uint64, flags_out: wp.array(dtype=int)):
     """Count up the own counter and wait until all others have come as far."""
     ...
 
@@ -35,7 +35,7 @@ def meet(
     # In:
     number: int,
     size: int,
-    pass_on: wp.uint64,
+    pause: wp.uint64,
     # In and out:
     flags_out: wp.array(dtype=int),
 ):
@@ -44,13 +44,13 @@ def meet(
     A phase lasts some hundred microseconds. Waking a sleeping thread takes tens of them, and the
     interpreter's lock as many; a short busy wait takes one.
     """
-    wait_for_others(number, size, pass_on, flags_out)
+    wait_for_others(number, size, pause, flags_out)
 
 
-def address_of_yield() -> int:
-    """Address of the C library's sched_yield, 0 where there is none."""
+def address_of_sleep() -> int:
+    """Address of the C library's usleep, 0 where there is none."""
     try:
-        function = ctypes.CDLL(None).sched_yield
+        function = ctypes.CDLL(None).usleep
     except (AttributeError, OSError, TypeError):
         return 0
     return ctypes.cast(function, ctypes.c_void_p).value or 0

@@ -13,6 +13,7 @@ import warp as wp
 
 from warp_kernels.color_model import SQUARE, ColorModel
 from warp_kernels.errors import OptionError
+from warp_kernels.image_tables import BLOCK_ROWS
 from warp_kernels.raster import MAX_SIDE
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
@@ -52,12 +53,12 @@ def row_adders(model: ColorModel) -> tuple[Any, Any]:
     color_type, area_type = types.color, types.area
     color_steps = _running_order(model.exponents)
     area_steps = _running_order(model.area_exponents)
-    words = 4 * model.table_depth
+    words = 4 * model.table_depth * BLOCK_ROWS
 
     # the prefix table comes as plain int32: four of them are widened by one instruction
     @wp.func
     def add_color(sums: color_type, line: wp.array(dtype=int), column: int) -> color_type:
-        """Add the pixels left of a column; `line` is a row of the prefix table, word by word."""
+        """Add the pixels left of a column; `line` begins at a row's first entry in its block."""
         for n in range(wp.static(len(color_steps))):
             for channel in range(4):
                 if wp.static(color_steps[n][1] < 0):

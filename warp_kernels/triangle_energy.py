@@ -7,6 +7,7 @@ import warp as wp
 
 from warp_kernels.color_model import ColorModel
 from warp_kernels.fit import fit_moments
+from warp_kernels.image_tables import table_entry
 from warp_kernels.moments import area_sums_left_of, color_sums_left_of, moment_types
 from warp_kernels.raster import column_of, to_fixed, walk_edge
 
@@ -51,7 +52,7 @@ def triangle_energy(model: ColorModel) -> Any:
             while row < walk.row_end:
                 column = wp.clamp(column_of(walk.position), 0, width)
                 y = wp.int64(row - height / 2)
-                entry = (row * (width + 1) + column) * wp.static(depth)
+                entry = table_entry(row, column, width, wp.static(depth))
                 color += sign * color_sums(table, entry, y)
                 area += sign * area_sums(powers[column], y)
                 walk.position += walk.step

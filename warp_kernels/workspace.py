@@ -15,7 +15,7 @@ from warp_kernels.device import Device, Phase
 from warp_kernels.edge_moments import record_edge_moments
 from warp_kernels.fit import record_fit
 from warp_kernels.fragments import record_fragment_moments
-from warp_kernels.image_tables import record_image_tables
+from warp_kernels.image_tables import record_image_tables, table_length
 from warp_kernels.moments import check_size, column_powers, moment_types
 from warp_kernels.solve import record_energies
 from warp_kernels.variants import EDGE_VERSIONS, TRIANGLE_VARIANTS
@@ -48,7 +48,7 @@ class Workspace:
         width, height = size
         types = moment_types(model)
         self._pixels = self._empty((height, width), wp.vec3ub)
-        self.table = self._empty(height * (width + 1) * model.table_depth, wp.vec4i)
+        self.table = self._empty(table_length(width, height, model), wp.vec4i)
         self.powers = wp.array(column_powers(width, model), dtype=types.powers, device=device.warp)
         self._controls = self._empty(3, wp.float64)
         self._tables = record_image_tables(device, model, pixels=self._pixels, table_out=self.table)

@@ -32,7 +32,7 @@ class Dis:
         OptionError: If the preset is unknown or `lines` below 12.
     """
 
-    lines: int = 360
+    lines: int = 240
     """Length of the short side of the pictures compared [px]; larger ones are reduced."""
     preset: str = "medium"
     """One of `PRESETS`.
