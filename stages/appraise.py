@@ -20,6 +20,8 @@ class Appraiser:
     def __init__(self, workspace: Workspace, least_height: float) -> None:
         self._workspace = workspace
         self._survey = Survey(workspace, least_height)
+        self._measured: Mesh | None = None
+        self._energies = np.zeros(0)
         self.colors = np.zeros((0, 3))
         """Colour at the centre of each triangle of the measured mesh [code values], [T, 3]."""
         self.counts = np.zeros(0, dtype=np.int64)
@@ -31,11 +33,18 @@ class Appraiser:
         Returns:
             E(T) [code value^2 px], [T].
         """
+        if mesh is self._measured:
+            return self._energies
         load_mesh(self._workspace, mesh)
-        coefficients, energies, self.counts = self._workspace.fit()
+        coefficients, self._energies, self.counts = self._workspace.fit()
         self.colors = colors_at_centres(mesh, self._workspace.model, coefficients)
         self._survey.load_topology(mesh.twins, mesh.triangles.reshape(-1))
-        return energies
+        self._measured = mesh
+        return self._energies
+
+    def forget(self) -> None:
+        """The picture has changed: what was measured is void."""
+        self._measured = None
 
     def flip_gains(self, half_edges: np.ndarray) -> np.ndarray:
         """Energy that flipping each edge of the measured mesh saves [code value^2 px], [N]."""

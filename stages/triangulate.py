@@ -124,9 +124,13 @@ class Triangulator:
             layout: Makes the first mesh.
             rng: Randomness of the layout.
         """
-        self._workspace.load_image(frame.pixels)
+        self._load(frame)
         mesh = layout.build(frame.pixels, self._layout_count, rng)
         return self._snapshot(frame, self._settle(self._refine(mesh)))
+
+    def _load(self, frame: Frame) -> None:
+        self._workspace.load_image(frame.pixels)
+        self._appraiser.forget()
 
     def next(self, frame: Frame, seed: Mesh) -> Snapshot:
         """Triangulate a frame that continues a shot.
@@ -136,7 +140,7 @@ class Triangulator:
             seed: The previous frame's mesh, carried along by the flow.
         """
         options = self.options
-        self._workspace.load_image(frame.pixels)
+        self._load(frame)
         mesh = self._follow(seed, seed, options.frame_iterations // 2)
         goal = Goal(options.refine.triangles, options.refine.error, calm=True)
         mesh = self._topology.adapt(mesh, self._appraiser, goal)
@@ -192,10 +196,11 @@ class Triangulator:
         return mesh
 
     def _snapshot(self, frame: Frame, mesh: Mesh) -> Snapshot:
+        """Fit the colours to the mesh that lies in the workspace, just optimised."""
         fitting = self._fitting
         if fitting is not self._workspace:
             fitting.load_image(frame.pixels)
-        load_mesh(fitting, mesh)
+            load_mesh(fitting, mesh)
         coefficients, energies, counts = fitting.fit()
         return Snapshot(
             frame_index=frame.index,

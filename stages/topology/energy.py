@@ -22,6 +22,9 @@ FLIP_PASSES = 2
 """Independent sets of flips that one round applies, each measured anew."""
 LEAST_GAIN = 1.0
 """Changes that save less than this are rounding [code value^2 px]."""
+CALM_SLIVER_HEIGHT = 0.3
+"""In a followed picture triangles thinner than this collapse [px]; a higher bar would make those
+that hover about it come and go."""
 EXAMINED = 8
 """Cheapest collapses looked at for each one wanted: some are illegal or touch each other."""
 
@@ -51,13 +54,16 @@ class Energy:
 
         Deviation: the paper keeps the Delaunay property and splits at centroids (Sec. 3.4).
         """
+        if goal.calm:
+            mesh = collapse_slivers(mesh, CALM_SLIVER_HEIGHT)
+            mesh = _flip(mesh, appraiser, self.calm_flip)
+            going = int(self.calm_relocated * goal.count)
+            return _relocate(mesh, appraiser, goal, going, self.calm_profit)
         mesh = collapse_slivers(mesh, SLIVER_HEIGHT)
-        for _ in range(1 if goal.calm else FLIP_PASSES):
-            mesh = _flip(mesh, appraiser, self.calm_flip if goal.calm else 0.0)
+        for _ in range(FLIP_PASSES):
+            mesh = _flip(mesh, appraiser, 0.0)
         mesh = _split(mesh, appraiser, goal)
-        share = self.calm_relocated if goal.calm else self.relocated
-        profit = self.calm_profit if goal.calm else self.profit
-        return _relocate(mesh, appraiser, goal, int(share * goal.count), profit)
+        return _relocate(mesh, appraiser, goal, int(self.relocated * goal.count), self.profit)
 
 
 def _flip(mesh: Mesh, appraiser: Appraiser, least_share: float) -> Mesh:
@@ -163,6 +169,8 @@ def _spread(mesh: Mesh, appraiser: Appraiser) -> np.ndarray:
 def _relocate(mesh: Mesh, appraiser: Appraiser, goal: Goal, most: int, profit: float) -> Mesh:
     """Take the vertices that are missed least and spend their triangles where they gain most.
 
+    Triangles that are missing already are spent along with them.
+
     Args:
         mesh: A valid mesh.
         appraiser: Measures it.
@@ -171,7 +179,7 @@ def _relocate(mesh: Mesh, appraiser: Appraiser, goal: Goal, most: int, profit: f
         profit: How many times a gain must exceed the cost.
     """
     if most < 1:
-        return mesh
+        return _split(mesh, appraiser, goal)
     energies = appraiser.energies(mesh)
     _, gains = _ranked_splits(mesh, appraiser, energies, most)
     going, costs = _ranked_collapses(mesh, appraiser, most)
@@ -183,6 +191,6 @@ def _relocate(mesh: Mesh, appraiser: Appraiser, goal: Goal, most: int, profit: f
     going, costs = going[apart][:most], costs[apart][:most]
     pairs = min(len(going), len(gains))
     going = going[: int((gains[:pairs] > profit * costs[:pairs]).sum())]
-    if not len(going):
-        return mesh
-    return _split(collapse_edges(mesh, going), appraiser, goal)
+    if len(going):
+        mesh = collapse_edges(mesh, going)
+    return _split(mesh, appraiser, goal)
