@@ -11,7 +11,7 @@ import dataclasses
 import importlib
 import runpy
 import sys
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
@@ -169,7 +169,7 @@ def _evaluate(source: _Source, node: ast.expr) -> Any:
     if isinstance(node, ast.Name):
         return _value_of(source, node.id)
     if isinstance(node, ast.Call) and ast.unparse(node.func) == "tuple" and len(node.args) == 1:
-        return tuple(_evaluate(source, node.args[0]))
+        return tuple(_iterable(source, node.args[0]))
     if isinstance(node, ast.Dict) and None not in node.keys:
         keys = (_evaluate(source, key) for key in node.keys if key is not None)
         return dict(zip(keys, (_evaluate(source, value) for value in node.values), strict=True))
@@ -177,6 +177,17 @@ def _evaluate(source: _Source, node: ast.expr) -> Any:
         return ast.literal_eval(node)
     except ValueError as error:
         raise _NotLiteralError(ast.unparse(node)) from error
+
+
+def _iterable(source: _Source, node: ast.expr) -> Iterable[Any]:
+    """What a tuple is made from: of a registry the names alone, its classes stay unread."""
+    if isinstance(node, ast.Name):
+        home, name = source, node.id
+        while isinstance(statement := home.statements.get(name), ast.ImportFrom):
+            home = _source(str(statement.module))
+        if not home.is_light and isinstance(value := _assigned(home, name), ast.Dict):
+            return [member for member, _ in _literal_members(value)]
+    return _evaluate(source, node)
 
 
 def _read_fields(source: _Source, definition: ast.stmt | None) -> Iterator[DeclaredField]:

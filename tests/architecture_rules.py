@@ -30,8 +30,9 @@ IMPORT_HOMES = {
 RUNTIME_PACKAGES = frozenset({"warp", "numpy", "scipy", "cv2", "av", "tqdm"})
 """Import names of the run-time dependencies."""
 
-ALLOCATING_FILES = frozenset({"warp_kernels/workspace.py"})
-"""The only owners of device memory."""
+ALLOCATING_FILES = frozenset({"warp_kernels/workspace.py", "warp_kernels/device.py"})
+"""The only files that ask Warp for memory: the arrays of a job come from the workspace or through
+`Device.empty`, which owns beside them the spans of phases and the counters of a team."""
 
 ALLOCATORS = frozenset(
     f"{kind}{suffix}" for kind in ("zeros", "ones", "empty", "full") for suffix in ("", "_like")

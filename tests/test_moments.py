@@ -14,7 +14,7 @@ from tests.oracles.variants import variants
 from warp_kernels.color_model import COLOR_MODELS, CONSTANT, LINEAR, ColorModel
 from warp_kernels.device import Device
 from warp_kernels.errors import OptionError
-from warp_kernels.image_tables import record_image_tables
+from warp_kernels.image_tables import BLOCK_ROWS, record_image_tables, table_length
 from warp_kernels.moments import check_size, column_powers
 from warp_kernels.raster import MAX_SIDE
 from warp_kernels.variants import DIRECTIONS, TRIANGLE_VARIANTS
@@ -133,13 +133,14 @@ def test_triangles_add_up_to_the_picture(model: ColorModel, device: str) -> None
 
 
 def prefix_table(picture: np.ndarray, model: ColorModel, device: Device) -> np.ndarray:
-    """The kernel's table, [H, W + 1, d + 1, 4]."""
+    """The kernel's table without its blocks, [H, W + 1, d + 1, 4]."""
     height, width = picture.shape[:2]
-    shape = (height, width + 1, model.table_depth, 4)
-    table = wp.full(int(np.prod(shape[:3])), POISON, dtype=wp.vec4i, device=device.warp)
+    length = table_length(width, height, model)
+    table = wp.full(length, POISON, dtype=wp.vec4i, device=device.warp)
     pixels = wp.array(picture, dtype=wp.vec3ub, device=device.warp)
     device.run([record_image_tables(device, model, pixels=pixels, table_out=table)])
-    return table.numpy().reshape(shape)
+    blocks = table.numpy().reshape(-1, width + 1, BLOCK_ROWS, model.table_depth, 4)
+    return blocks.swapaxes(1, 2).reshape(-1, width + 1, model.table_depth, 4)[:height]
 
 
 def prefix_sums(picture: np.ndarray, model: ColorModel) -> np.ndarray:

@@ -48,14 +48,16 @@ class Canvas:
         band = (self._band * self.samples, columns)
         self._triangle_of = device.empty(band, int)
         self._pixels = device.empty((height, width), wp.vec3ub)
-        self._edge_count = wp.zeros(1, dtype=int, device=device.warp)
+        self._edge_count = device.empty(1, int)
         self._line_width = max((style.line_width for style in styles), default=0.0)
         shape = (height, width) if self._line_width else (1, 1)
-        self._coverage = wp.zeros(shape, dtype=float, device=device.warp)
+        self._coverage = device.empty(shape, float)
+        device.clear(self._coverage)
         packed = np.zeros((max(1, len(styles)), 8), dtype=np.float32)
         for row, style in zip(packed, styles, strict=False):
             row[: len(style.parameters())] = style.parameters()
-        self._parameters = wp.array(packed, dtype=StyleParameters, device=device.warp)
+        self._parameters = device.empty(len(packed), StyleParameters)
+        device.write(self._parameters, packed)
         self._allocate(vertices=512, triangles=1024)
 
     def draw(

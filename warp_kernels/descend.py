@@ -54,7 +54,7 @@ class Surroundings:
     curvature: wp.vec2d
     """Sum of the second differences of E(T) per axis [code value^2 / px]."""
     ring: wp.vec2d
-    """Mean position of the neighbours [px]."""
+    """Mean position of the neighbours [px]; at the border inner ones count twice."""
     height: wp.float64
     """Smallest height of a triangle around [px]."""
 
@@ -196,8 +196,9 @@ def record_descent(
     Deviation: a diagonal Newton step takes the place of a fixed step size, since the twelve
         variants give second differences as well; each vertex keeps a trust region of its own per
         axis, which grows while its steps agree and shrinks when they turn round; a step is also
-        limited by the heights around, so that no triangle turns inside out; and a spring holds a
-        vertex to where the optical flow took it.
+        limited by the heights around, so that no triangle turns inside out; a spring holds a
+        vertex to where the optical flow took it; and in Eq. 9 a border vertex weighs its inner
+        neighbours twice and the two along the border once, for it meets them that often.
     """
     inputs = [
         vertices, triangles, energies, fan_offsets, fan_corners, freedom, anchors, controls,

@@ -32,6 +32,40 @@ it. The other flags are Warp's own."""
 
 
 @cache
+def _walk_starter(lanes: int) -> Any:
+    """A wp.func: start the walks of `lanes` versions of an edge in one common row."""
+    int_lanes = wp.types.vector(length=lanes, dtype=wp.int32)
+    long_lanes = wp.types.vector(length=lanes, dtype=wp.int64)
+
+    @wp.func
+    def start_walks(a: wp.vec2i, b: wp.vec2i, first: int, height: int):
+        """Versions from `first` on: per version `EdgeWalk`, then the first and the end row."""
+        position = long_lanes()
+        step = long_lanes()
+        row_begin = int_lanes()
+        row_count = int_lanes()
+        sign = int_lanes()
+        row = height
+        end = int(0)
+        for i in range(wp.static(lanes)):
+            start_move = end_displacement(first + i, 0, wp.static(SUBPIXELS))
+            end_move = end_displacement(first + i, 1, wp.static(SUBPIXELS))
+            walk = walk_edge(a + start_move, b + end_move, height)
+            position[i] = walk.position
+            step[i] = walk.step
+            row_begin[i] = walk.row_begin
+            row_count[i] = walk.row_end - walk.row_begin
+            sign[i] = walk.sign
+            row = wp.min(row, walk.row_begin)
+            end = wp.max(end, walk.row_end)
+        for i in range(wp.static(lanes)):
+            position[i] -= wp.int64(row_begin[i] - row) * step[i]
+        return position, step, row_begin, row_count, sign, row, end
+
+    return start_walks
+
+
+@cache
 def _edge_kernel(model: ColorModel, versions: int, lanes: int) -> Any:
     """The kernel of which every thread walks `lanes` of an edge's versions side by side."""
     types = moment_types(model)
@@ -39,11 +73,10 @@ def _edge_kernel(model: ColorModel, versions: int, lanes: int) -> Any:
     add_color, add_area = row_adders(model)
     settle_color = color_settler(model)
     settle_area = area_settler(model)
+    start_walks = _walk_starter(lanes)
     parts = versions // lanes
     words = 4 * model.table_depth
     block_words = BLOCK_ROWS * words
-    int_lanes = wp.types.vector(length=lanes, dtype=wp.int32)
-    long_lanes = wp.types.vector(length=lanes, dtype=wp.int64)
     color_lanes = wp.types.matrix(shape=(lanes, 4 * model.term_count), dtype=wp.int64)
     area_lanes = wp.types.matrix(shape=(lanes, model.area_count), dtype=wp.int64)
 
@@ -72,26 +105,7 @@ def _edge_kernel(model: ColorModel, versions: int, lanes: int) -> Any:
             return  # the sums of an edge at rest still stand
         a = to_fixed(vertices[ends[0]])
         b = to_fixed(vertices[ends[1]])
-        position = long_lanes()
-        step = long_lanes()
-        row_begin = int_lanes()
-        row_count = int_lanes()
-        sign = int_lanes()
-        row = height
-        end = 0
-        for i in range(wp.static(lanes)):
-            start_move = end_displacement(first + i, 0, wp.static(SUBPIXELS))
-            end_move = end_displacement(first + i, 1, wp.static(SUBPIXELS))
-            walk = walk_edge(a + start_move, b + end_move, height)
-            position[i] = walk.position
-            step[i] = walk.step
-            row_begin[i] = walk.row_begin
-            row_count[i] = walk.row_end - walk.row_begin
-            sign[i] = walk.sign
-            row = wp.min(row, walk.row_begin)
-            end = wp.max(end, walk.row_end)
-        for i in range(wp.static(lanes)):
-            position[i] -= wp.int64(row_begin[i] - row) * step[i]
+        position, step, row_begin, row_count, sign, row, end = start_walks(a, b, first, height)
         color = color_lanes()
         area = area_lanes()
         pitch = wp.uint64(width + 1) * wp.uint64(wp.static(4 * block_words))
@@ -129,7 +143,6 @@ def record_edge_moments(
     edges: wp.array,
     moved: wp.array,
     table: wp.array,
-    powers: wp.array,
     size: tuple[int, int],
     color_out: wp.array,
     area_out: wp.array,
@@ -147,7 +160,6 @@ def record_edge_moments(
         moved: 1 where a vertex has moved since the sums were taken, [V]; the nine versions of an
             edge at rest are left as they are.
         table: Prefix sums of the image, see `image_tables`.
-        powers: Not read: they follow from the columns.
         size: Width and height of the image [px].
         color_out: Colour moments, [E, versions] vectors of 4 K int64.
         area_out: Area moments, [E, versions] vectors of G int64.

@@ -101,6 +101,7 @@ def _fit_kernel(model: ColorModel) -> Any:
         energies_out: wp.array(dtype=wp.float64),
         counts_out: wp.array(dtype=wp.int64),
     ):
+        """Gather the sums of one triangle's sides, solve, and move the origin to the image's."""
         triangle = span[0][0] + wp.tid()
         if triangle >= span[0][1]:
             return

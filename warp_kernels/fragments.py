@@ -36,6 +36,7 @@ def _fragment_kernel(model: ColorModel) -> Any:
         color_out: wp.array2d(dtype=color_type),
         area_out: wp.array2d(dtype=area_type),
     ):
+        """Add up the fragments of one variant of one triangle."""
         number = span[0][0] + wp.tid()
         if number >= span[0][1]:
             return

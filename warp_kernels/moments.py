@@ -203,6 +203,7 @@ def color_sums_left_of(model: ColorModel) -> Any:
 
         @wp.func
         def color_sums(table: wp.array(dtype=wp.vec4i), entry: int, y: wp.int64) -> sums:
+            """Read the one entry that a constant colour needs."""
             t = table[entry]
             return sums(wp.int64(t[0]), wp.int64(t[1]), wp.int64(t[2]), wp.int64(t[3]))
 
@@ -210,6 +211,7 @@ def color_sums_left_of(model: ColorModel) -> Any:
 
         @wp.func
         def color_sums(table: wp.array(dtype=wp.vec4i), entry: int, y: wp.int64) -> sums:
+            """Read two entries, of power 0 and 1, and multiply the first by y."""
             t = table[entry]
             u = table[entry + 1]
             red = wp.int64(t[0])
@@ -247,12 +249,14 @@ def area_sums_left_of(model: ColorModel) -> Any:
 
         @wp.func
         def area_sums(powers: powers_type, y: wp.int64) -> sums:
+            """The pixels left of the column."""
             return sums(powers[0])
 
     elif model.degree == 1:
 
         @wp.func
         def area_sums(powers: powers_type, y: wp.int64) -> sums:
+            """The sums of 1, x, y, x^2, x y and y^2, as `ColorModel.area_exponents` orders them."""
             y_count = y * powers[0]
             return sums(powers[0], powers[1], y_count, powers[2], y * powers[1], y * y_count)
 
@@ -267,6 +271,7 @@ def color_sums_of_pixel(model: ColorModel) -> Any:
 
     @wp.func
     def color_sums(pixel: wp.vec3ub, x: wp.int64, y: wp.int64) -> sums:
+        """Each channel times x^a y^b, and the square of the colour."""
         total = sums()
         for term in range(wp.static(len(exponents))):
             factor = wp.int64(1)

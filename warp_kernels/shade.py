@@ -43,6 +43,16 @@ def _stack(shaders: tuple[Any, ...]) -> Any:
     return blended
 
 
+@wp.func
+def to_code_values(color: wp.vec3f) -> wp.vec3ub:
+    """Round a colour to code values."""
+    return wp.vec3ub(
+        wp.uint8(int(wp.clamp(color[0], 0.0, 255.0) + 0.5)),
+        wp.uint8(int(wp.clamp(color[1], 0.0, 255.0) + 0.5)),
+        wp.uint8(int(wp.clamp(color[2], 0.0, 255.0) + 0.5)),
+    )
+
+
 @cache
 def _shade_kernel(shaders: tuple[Any, ...], samples: int) -> Any:
     color_at = _stack(shaders)
@@ -104,11 +114,7 @@ def _shade_kernel(shaders: tuple[Any, ...], samples: int) -> Any:
                         )
                         color += color_at(scene, parameters, here)
                 color = color * wp.static(1.0 / (samples * samples))
-            canvas_out[row, column] = wp.vec3ub(
-                wp.uint8(int(wp.clamp(color[0], 0.0, 255.0) + 0.5)),
-                wp.uint8(int(wp.clamp(color[1], 0.0, 255.0) + 0.5)),
-                wp.uint8(int(wp.clamp(color[2], 0.0, 255.0) + 0.5)),
-            )
+            canvas_out[row, column] = to_code_values(color)
             column += 1
 
     return shade

@@ -5,6 +5,7 @@ import warp as wp
 
 from warp_kernels.device import Phase
 from warp_kernels.topology_gains import (
+    SurveyArrays,
     record_collapse_costs,
     record_flip_gains,
     record_split_gains,
@@ -42,7 +43,7 @@ class Survey:
             self._twins = device.empty(self._capacity, int)
             self._corners = device.empty(self._capacity, int)
             self._half_edges = device.empty(self._capacity, int)
-            self._gains = device.empty(self._capacity, wp.float64)
+            self._changes = device.empty(self._capacity, wp.float64)
         device.write(self._twins, twins)
         device.write(self._corners, corners)
 
@@ -67,34 +68,26 @@ class Survey:
         phase.resize(len(half_edges))
         device.write(self._half_edges, half_edges)
         device.run([phase])
-        return device.read(self._gains, len(half_edges))
+        return device.read(self._changes, len(half_edges))
 
     def _record(self, change: str) -> Phase:
         workspace = self._workspace
-        common = {
-            "half_edges": self._half_edges,
-            "corners": self._corners,
-            "vertices": workspace.standing,
-            "energies": workspace.fit_energies,
-            "table": workspace.table,
-            "powers": workspace.powers,
-            "height": workspace.size[1],
-            "least_height": self._least_height,
-        }
-        device, model = workspace.device, workspace.model
-        if change == "flip":
-            return record_flip_gains(
-                device, model, twins=self._twins, gains_out=self._gains, **common
-            )
-        if change == "split":
-            return record_split_gains(
-                device, model, twins=self._twins, share=0.5, gains_out=self._gains, **common
-            )
-        return record_collapse_costs(
-            device,
-            model,
+        arrays = SurveyArrays(
+            half_edges=self._half_edges,
+            twins=self._twins,
+            corners=self._corners,
             fan_offsets=workspace.fan_offsets,
             fan_corners=workspace.fan_corners,
-            costs_out=self._gains,
-            **common,
+            vertices=workspace.standing,
+            energies=workspace.fit_energies,
+            table=workspace.table,
+            powers=workspace.powers,
+            changes_out=self._changes,
         )
+        limits = {"height": workspace.size[1], "least_height": self._least_height}
+        device, model = workspace.device, workspace.model
+        if change == "flip":
+            return record_flip_gains(device, model, arrays, **limits)
+        if change == "split":
+            return record_split_gains(device, model, arrays, share=0.5, **limits)
+        return record_collapse_costs(device, model, arrays, **limits)

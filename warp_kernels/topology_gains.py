@@ -1,5 +1,6 @@
 """What every possible flip, collapse and split would do to the energy: all candidates at once."""
 
+from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
@@ -15,6 +16,32 @@ wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 
 IMPOSSIBLE = 1.0e30
 """Cost of a change that would turn a triangle inside out or make it too thin."""
+
+
+@dataclass(frozen=True, eq=False)
+class SurveyArrays:
+    """The mesh and the picture that changes are measured on, and where the results go."""
+
+    half_edges: wp.array
+    """The changes to look at, by a half-edge each, [N] int."""
+    twins: wp.array
+    """The half-edge that runs the other way, -1 on the border, [3 T] int."""
+    corners: wp.array
+    """Vertex number of every half-edge's origin, [3 T] int."""
+    fan_offsets: wp.array
+    """Where each vertex's corners begin in `fan_corners`, [V + 1] int."""
+    fan_corners: wp.array
+    """Corner numbers 3 t + c around each vertex, [3 T] int."""
+    vertices: wp.array
+    """Positions [px], [V] vec2d."""
+    energies: wp.array
+    """E(T) as it stands [code value^2 px], [T] float64."""
+    table: wp.array
+    """Prefix sums of the image, see `image_tables`."""
+    powers: wp.array
+    """Sums of x^a left of each column, [W + 1] vectors."""
+    changes_out: wp.array
+    """Change of energy [code value^2 px], [N] float64; its sign is the launcher's."""
 
 
 @wp.func
@@ -175,126 +202,74 @@ def _split_kernel(model: ColorModel) -> Any:
 
 
 def record_flip_gains(
-    device: Device,
-    model: ColorModel,
-    *,
-    half_edges: wp.array,
-    twins: wp.array,
-    corners: wp.array,
-    vertices: wp.array,
-    energies: wp.array,
-    table: wp.array,
-    powers: wp.array,
-    height: int,
-    least_height: float,
-    gains_out: wp.array,
+    device: Device, model: ColorModel, arrays: SurveyArrays, *, height: int, least_height: float
 ) -> Phase:
     """Prepare the launch that measures every flip.
 
+    It writes the energy saved, -IMPOSSIBLE where there is no flip.
+
     Args:
         device: Where to run.
         model: The polynomial colour.
-        half_edges: The edges to look at, by one of their half-edges, [N].
-        twins: The half-edge that runs the other way, -1 on the border, [3 T].
-        corners: Vertex number of every half-edge's origin, [3 T].
-        vertices: Positions [px], [V] vec2d.
-        energies: E(T) as it stands [code value^2 px], [T].
-        table: Prefix sums of the image, see `image_tables`.
-        powers: Sums of x^a left of each column, [W + 1] vectors.
+        arrays: What is read and written; half-edges stand for their edges.
         height: Rows of the image [px].
         least_height: Smallest height that the new triangles may have [px].
-        gains_out: Energy saved [code value^2 px], -IMPOSSIBLE where there is no flip, [N].
 
     Deviation: the paper flips for the Delaunay property alone (Sec. 3.4).
     """
-    inputs = [
-        half_edges, twins, corners, vertices, energies, table, powers, height,
-        wp.float64(least_height),
-    ]  # fmt: skip
-    return device.record(_flip_kernel(model), inputs, [gains_out])
+    mesh = [arrays.half_edges, arrays.twins, arrays.corners, arrays.vertices, arrays.energies]
+    picture = [arrays.table, arrays.powers, height]
+    inputs = [*mesh, *picture, wp.float64(least_height)]
+    return device.record(_flip_kernel(model), inputs, [arrays.changes_out])
 
 
 def record_collapse_costs(
-    device: Device,
-    model: ColorModel,
-    *,
-    half_edges: wp.array,
-    corners: wp.array,
-    fan_offsets: wp.array,
-    fan_corners: wp.array,
-    vertices: wp.array,
-    energies: wp.array,
-    table: wp.array,
-    powers: wp.array,
-    height: int,
-    least_height: float,
-    costs_out: wp.array,
+    device: Device, model: ColorModel, arrays: SurveyArrays, *, height: int, least_height: float
 ) -> Phase:
     """Prepare the launch that measures every half-edge collapse.
+
+    It writes the energy added, half of IMPOSSIBLE or more where a triangle would fold.
 
     Args:
         device: Where to run.
         model: The polynomial colour.
-        half_edges: Half-edges whose origin would move into their destination, [N].
-        corners: Vertex number of every half-edge's origin, [3 T].
-        fan_offsets: Where each vertex's corners begin in `fan_corners`, [V + 1].
-        fan_corners: Corner numbers 3 t + c around each vertex, [3 T].
-        vertices: Positions [px], [V] vec2d.
-        energies: E(T) as it stands [code value^2 px], [T].
-        table: Prefix sums of the image, see `image_tables`.
-        powers: Sums of x^a left of each column, [W + 1] vectors.
+        arrays: What is read and written; the origins of half-edges move into their destinations.
         height: Rows of the image [px].
         least_height: Smallest height that the changed triangles may have [px].
-        costs_out: Energy added [code value^2 px], IMPOSSIBLE or more where a triangle would fold,
-            [N].
 
     Deviation: the paper collapses triangles of small area on their shortest edge (Sec. 3.4).
     """
-    inputs = [
-        half_edges, corners, fan_offsets, fan_corners, vertices, energies, table, powers, height,
-        wp.float64(least_height),
-    ]  # fmt: skip
-    return device.record(_collapse_kernel(model), inputs, [costs_out])
+    fans = [arrays.fan_offsets, arrays.fan_corners]
+    mesh = [arrays.half_edges, arrays.corners, *fans, arrays.vertices, arrays.energies]
+    picture = [arrays.table, arrays.powers, height]
+    inputs = [*mesh, *picture, wp.float64(least_height)]
+    return device.record(_collapse_kernel(model), inputs, [arrays.changes_out])
 
 
 def record_split_gains(
     device: Device,
     model: ColorModel,
+    arrays: SurveyArrays,
     *,
-    half_edges: wp.array,
-    twins: wp.array,
-    corners: wp.array,
-    vertices: wp.array,
-    energies: wp.array,
-    table: wp.array,
-    powers: wp.array,
     height: int,
     least_height: float,
     share: float,
-    gains_out: wp.array,
 ) -> Phase:
     """Prepare the launch that measures the split of every edge at one place.
+
+    It writes the energy saved, -IMPOSSIBLE where a triangle would be too thin.
 
     Args:
         device: Where to run.
         model: The polynomial colour.
-        half_edges: The edges to look at, by one of their half-edges, [N].
-        twins: The half-edge that runs the other way, -1 on the border, [3 T].
-        corners: Vertex number of every half-edge's origin, [3 T].
-        vertices: Positions [px], [V] vec2d.
-        energies: E(T) as it stands [code value^2 px], [T].
-        table: Prefix sums of the image, see `image_tables`.
-        powers: Sums of x^a left of each column, [W + 1] vectors.
+        arrays: What is read and written; half-edges stand for their edges.
         height: Rows of the image [px].
         least_height: Smallest height that the new triangles may have [px].
         share: Where between origin (0) and destination (1) of the half-edge.
-        gains_out: Energy saved [code value^2 px], -IMPOSSIBLE where a triangle would be too thin,
-            [N].
 
     Deviation: the paper splits the triangles of the largest error at their centroids (Sec. 3.4).
     """
-    inputs = [
-        half_edges, twins, corners, vertices, energies, table, powers, height,
-        wp.float64(least_height), wp.float64(share),
-    ]  # fmt: skip
-    return device.record(_split_kernel(model), inputs, [gains_out])
+    mesh = [arrays.half_edges, arrays.twins, arrays.corners, arrays.vertices, arrays.energies]
+    picture = [arrays.table, arrays.powers, height]
+    inputs = [*mesh, *picture, wp.float64(least_height), wp.float64(share)]
+    return device.record(_split_kernel(model), inputs, [arrays.changes_out])

@@ -211,7 +211,11 @@ class Workspace:
 
     def _record(self) -> None:
         """Record every launch anew: the arrays have moved."""
-        common = {"table": self.table, "powers": self.powers, "size": self.size}
+        self._record_iteration()
+        self._record_fit()
+
+    def _record_iteration(self) -> None:
+        """Moments, energies and steps; steps go to and fro between two arrays of vertices."""
         self._moments = [self._record_moments(front) for front in self._vertices]
         self._energy = record_energies(
             self.device,
@@ -241,6 +245,9 @@ class Workspace:
             )
             for front in (0, 1)
         ]
+
+    def _record_fit(self) -> None:
+        """Colours of the mesh as it stands, from either array of vertices."""
         self._fit_sums = [
             record_edge_moments(
                 self.device,
@@ -248,10 +255,11 @@ class Workspace:
                 vertices=front,
                 edges=self._edges,
                 moved=self._moved,
+                table=self.table,
+                size=self.size,
                 color_out=self._fit_color_sums,
                 area_out=self._fit_area_sums,
                 versions=1,
-                **common,
             )
             for front in self._vertices
         ]
@@ -286,7 +294,6 @@ class Workspace:
             edges=self._edges,
             moved=self._moved,
             table=self.table,
-            powers=self.powers,
             size=self.size,
             color_out=self._color_sums,
             area_out=self._area_sums,

@@ -1,0 +1,199 @@
+"""The team of threads: equal results, no waiting for ever, and a device that survives mistakes."""
+
+from collections.abc import Callable
+from threading import Thread
+
+import numpy as np
+import pytest
+import warp as wp
+
+from stages.optimize import load_mesh
+from tests.kernel_samples import noise, poisoned_workspace, random_mesh, waves
+from warp_kernels.color_model import COLOR_MODELS, CONSTANT, LINEAR, ColorModel
+from warp_kernels.device import Device, Phase, Team
+from warp_kernels.workspace import Workspace
+
+Replay = Callable[[Team, int], None]
+"""`Team.replay`."""
+
+WIDTH, HEIGHT = 61, 47
+STEPS = {"trust": 0.5, "regularity": 1e-3}
+PATIENCE = 30.0
+"""Seconds after which something waits for ever."""
+
+
+@wp.kernel(enable_backward=False)
+def count_visits(span: wp.array(dtype=wp.vec2i), visits_out: wp.array(dtype=int)):
+    """Count how often every element is visited."""
+    number = span[0][0] + wp.tid()
+    if number < span[0][1]:
+        visits_out[number] = visits_out[number] + 1
+
+
+def counting(device: Device, size: int) -> tuple[Phase, wp.array]:
+    """A phase that counts visits, and the counts of `size` elements."""
+    visits = device.empty(size, int)
+    device.clear(visits)
+    return device.record(count_visits, [], [visits]), visits
+
+
+def ends_in_time(*works: Thread) -> bool:
+    """Start threads and say whether all of them end."""
+    for work in works:
+        work.start()
+    for work in works:
+        work.join(PATIENCE)
+    return not any(work.is_alive() for work in works)
+
+
+def interrupt(*_: object) -> None:
+    """What the interpreter does on Ctrl-C."""
+    raise KeyboardInterrupt
+
+
+@pytest.mark.parametrize("threads", [1, 2, 3])
+def test_every_element_is_visited_once_per_run(threads: int, device: str) -> None:
+    """Many replays while the number of elements grows, shrinks, and is nothing."""
+    runner = Device(device, threads)
+    phase, visits = counting(runner, 3000)
+    expected = np.zeros(3000, dtype=int)
+    sizes = np.random.default_rng(threads).integers(0, 3001, 150)
+    for size in (*sizes, 0, 1, 15, 16, 17, 3000):
+        phase.resize(int(size))
+        runner.run([phase], 3)
+        expected[:size] += 3
+    np.testing.assert_array_equal(runner.read(visits, 3000), expected)
+
+
+def test_no_times_runs_nothing(device: str) -> None:
+    """Zero times is a number of times."""
+    runner = Device(device, 2)
+    phase, visits = counting(runner, 100)
+    phase.resize(100)
+    runner.run([phase], times=0)
+    assert not runner.read(visits, 100).any()
+    runner.run([phase])
+    assert (runner.read(visits, 100) == 1).all()
+
+
+def test_same_bits_while_meshes_change_size(device: str) -> None:
+    """A dozen meshes of any size in the same memory, by one, two and three threads."""
+    sizes = np.random.default_rng(0).integers(5, 400, 12)
+    meshes = [random_mesh(WIDTH, HEIGHT, int(size), seed=n) for n, size in enumerate(sizes)]
+    ends: list[list[np.ndarray]] = []
+    for threads in (1, 2, 3):
+        workspace = Workspace(Device(device, threads), (WIDTH, HEIGHT), LINEAR)
+        workspace.load_image(noise(WIDTH, HEIGHT))
+        ends.append([])
+        for mesh in meshes:
+            load_mesh(workspace, mesh)
+            for times in (1, 4, 9):
+                workspace.iterate(times, **STEPS)
+            ends[-1] += [workspace.vertices(), *workspace.fit()]
+    for other in ends[1:]:
+        for actual, expected in zip(other, ends[0], strict=True):
+            np.testing.assert_array_equal(actual, expected)
+
+
+@pytest.mark.parametrize("threads", [1, 2, 3])
+def test_interrupted_device_still_works(
+    threads: int, device: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Ctrl-C while the others are at work leaves them behind, not the next caller."""
+    runner = Device(device, threads)
+    phase, visits = counting(runner, 500)
+    phase.resize(500)
+    with monkeypatch.context() as patched:
+        patched.setattr(Team, "replay", _interrupted_for_the_caller(Team.replay))
+        with pytest.raises(KeyboardInterrupt):
+            runner.run([phase], 5)
+    runner.clear(visits)
+    assert ends_in_time(Thread(target=runner.run, args=([phase], 4), daemon=True))
+    assert (runner.read(visits, 500) == 4).all()
+
+
+def test_interrupt_while_capturing_leaves_a_device_that_works(
+    device: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Ctrl-C before anybody has started: the next call captures anew."""
+    runner = Device(device, 2)
+    phase, visits = counting(runner, 500)
+    phase.resize(500)
+    with monkeypatch.context() as patched:
+        patched.setattr(Team, "_capture", interrupt)
+        with pytest.raises(KeyboardInterrupt):
+            runner.run([phase])
+    assert ends_in_time(Thread(target=runner.run, args=([phase],), daemon=True))
+    assert (runner.read(visits, 500) == 1).all()
+
+
+def test_two_threads_may_use_one_device(device: str) -> None:
+    """The one that solves and the one that draws do not wait for each other for ever."""
+    runner = Device(device, 2)
+    pairs = [counting(runner, 700) for _ in range(2)]
+
+    def work(phase: Phase) -> None:
+        """Run a phase over and over, with a new graph now and then."""
+        for turn in range(60):
+            phase.resize(700 - 200 * (turn % 3))
+            runner.run([phase], 2)
+
+    works = [Thread(target=work, args=(phase,), daemon=True) for phase, _ in pairs]
+    assert ends_in_time(*works)
+    for _, visits in pairs:
+        counts = runner.read(visits, 700)
+        assert counts[:300].tolist() == [120] * 300
+        assert counts[600:].tolist() == [40] * 100
+
+
+def test_two_devices_may_be_used_at_once(device: str) -> None:
+    """Two teams of two threads on two workspaces end where each ends alone."""
+    mesh = random_mesh(WIDTH, HEIGHT, 200)
+    alone = poisoned_workspace(Device(device, 1), waves(WIDTH, HEIGHT), mesh, CONSTANT)
+    alone.iterate(40, **STEPS)
+    both = [
+        poisoned_workspace(Device(device, 2), waves(WIDTH, HEIGHT), mesh, CONSTANT)
+        for _ in range(2)
+    ]
+    works = [
+        Thread(target=workspace.iterate, args=(40,), kwargs=STEPS, daemon=True)
+        for workspace in both
+    ]
+    assert ends_in_time(*works)
+    for workspace in both:
+        np.testing.assert_array_equal(workspace.vertices(), alone.vertices())
+
+
+@pytest.mark.parametrize("model", COLOR_MODELS.values(), ids=COLOR_MODELS)
+def test_leaving_edges_at_rest_alone_changes_no_bit(model: ColorModel, device: str) -> None:
+    """With a dead band many vertices rest: the same as if each were said to have moved."""
+    mesh = random_mesh(WIDTH, HEIGHT, 150, seed=4)
+    skipping, thorough = (
+        poisoned_workspace(Device(device, 2), waves(WIDTH, HEIGHT), mesh, model) for _ in range(2)
+    )
+    everyone = np.ones(mesh.vertex_count, dtype=np.int32)
+    resting = 0
+    for _ in range(30):
+        before = skipping.vertices()
+        for workspace in (skipping, thorough):
+            workspace.iterate(1, dead_band=0.1, **STEPS)
+        np.testing.assert_array_equal(skipping.vertices(), thorough.vertices())
+        resting += int((skipping.vertices() == before).all(axis=1).sum())
+        thorough.device.write(thorough._moved, everyone)
+    assert resting > 5 * mesh.vertex_count
+    np.testing.assert_array_equal(skipping.energies(), thorough.energies())
+
+
+def _interrupted_for_the_caller(replay: Replay) -> Replay:
+    """A team's `replay` that Ctrl-C ends on the calling thread, after one of its runs."""
+
+    def replay_until_interrupted(team: Team, number: int) -> None:
+        """Do one of the runs, then stop where others expect to meet."""
+        if number > 0:
+            replay(team, number)
+            return
+        graphs, _ = team._job
+        wp.capture_launch(graphs[0])
+        raise KeyboardInterrupt
+
+    return replay_until_interrupted

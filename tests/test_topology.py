@@ -1,0 +1,236 @@
+"""Changes of topology: what is measured is what an edit brings, and edits lead to the goal."""
+
+import dataclasses
+from functools import cache
+
+import numpy as np
+import pytest
+from meshes import scrambled
+from test_legalise import assert_delaunay
+
+from stages.appraise import Appraiser
+from stages.edits import collapse_edges, collapsible, flip_edges, flippable, split_edges
+from stages.mesh import Mesh, heights_of, next_corner
+from stages.topology import TOPOLOGIES, Goal
+from stages.topology.energy import LEAST_GAIN, Energy
+from stages.validate import assert_valid
+from tests.kernel_samples import noise, poisoned_workspace, random_mesh, waves
+from warp_kernels.color_model import COLOR_MODELS, LINEAR, ColorModel
+from warp_kernels.device import Device
+from warp_kernels.topology_gains import IMPOSSIBLE
+
+WIDTH, HEIGHT = 61, 47
+LEAST_HEIGHT = 0.5
+"""Changes that leave a thinner triangle are impossible [px]."""
+TOLERANCE = {"rtol": 1e-9, "atol": 1e-3}
+"""Rounding of the energies' differences [code value^2 px]."""
+MODELS = pytest.mark.parametrize("model", COLOR_MODELS.values(), ids=COLOR_MODELS)
+SEEDS = pytest.mark.parametrize("seed", range(2))
+
+
+@cache
+def mesh_of_seed(seed: int) -> Mesh:
+    """A mesh of about 90 triangles that is not Delaunay, corners on 1/16 px."""
+    return scrambled(random_mesh(WIDTH, HEIGHT, 40, seed=seed, grid=16), seed, rounds=2)
+
+
+def appraiser_of(device: str, model: ColorModel, picture: np.ndarray, mesh: Mesh) -> Appraiser:
+    """An appraiser that knows a picture; a mesh of the picture's size lies in its memory."""
+    return Appraiser(poisoned_workspace(Device(device, 2), picture, mesh, model), LEAST_HEIGHT)
+
+
+def total(appraiser: Appraiser, mesh: Mesh) -> float:
+    """Energy of a whole mesh [code value^2 px]."""
+    return float(appraiser.energies(mesh).sum())
+
+
+@SEEDS
+@MODELS
+def test_flip_gains_are_what_flips_save(model: ColorModel, seed: int, device: str) -> None:
+    """Each flip by itself, against the whole mesh; the others are marked as impossible."""
+    mesh = mesh_of_seed(seed)
+    appraiser = appraiser_of(device, model, noise(WIDTH, HEIGHT), mesh)
+    before = total(appraiser, mesh)
+    edges = mesh.edge_half_edges
+    gains = appraiser.flip_gains(edges)
+    possible = flippable(mesh, edges, LEAST_HEIGHT)
+    assert 20 < possible.sum() < len(edges) - 10
+    np.testing.assert_array_equal(gains > -IMPOSSIBLE, possible)
+    saved = [before - total(appraiser, flip_edges(mesh, [edge])) for edge in edges[possible]]
+    np.testing.assert_allclose(gains[possible], saved, **TOLERANCE)
+
+
+@SEEDS
+@MODELS
+def test_split_gains_are_what_splits_save(model: ColorModel, seed: int, device: str) -> None:
+    """Each split by itself, of inner edges and of those on the border."""
+    mesh = mesh_of_seed(seed)
+    appraiser = appraiser_of(device, model, noise(WIDTH, HEIGHT), mesh)
+    before = total(appraiser, mesh)
+    edges = mesh.edge_half_edges
+    gains = appraiser.split_gains(edges)
+    halves = [split_edges(mesh, [edge]) for edge in edges]
+    possible = np.array([split.heights[_changed(mesh, split)].min() for split in halves])
+    np.testing.assert_array_equal(gains > -IMPOSSIBLE, possible >= LEAST_HEIGHT)
+    chosen = np.flatnonzero(gains > -IMPOSSIBLE)
+    assert (mesh.twins[edges[chosen]] < 0).any()
+    saved = [before - total(appraiser, halves[n]) for n in chosen]
+    np.testing.assert_allclose(gains[chosen], saved, **TOLERANCE)
+
+
+@SEEDS
+@MODELS
+def test_collapse_costs_are_what_collapses_add(model: ColorModel, seed: int, device: str) -> None:
+    """Each legal collapse by itself, within the picture and along its border."""
+    mesh = mesh_of_seed(seed)
+    appraiser = appraiser_of(device, model, noise(WIDTH, HEIGHT), mesh)
+    before = total(appraiser, mesh)
+    half_edges = np.arange(3 * mesh.triangle_count)
+    costs = appraiser.collapse_costs(half_edges)
+    legal = collapsible(mesh, half_edges, LEAST_HEIGHT)
+    assert legal.sum() > 40
+    assert (mesh.twins[half_edges[legal]] < 0).any()
+    added = [total(appraiser, collapse_edges(mesh, [edge])) - before for edge in half_edges[legal]]
+    np.testing.assert_allclose(costs[legal], added, **TOLERANCE)
+
+
+@SEEDS
+def test_collapses_that_fold_a_triangle_are_impossible(seed: int, device: str) -> None:
+    """Those that leave a thin or an overturned triangle, found one by one."""
+    mesh = mesh_of_seed(seed)
+    appraiser = appraiser_of(device, LINEAR, noise(WIDTH, HEIGHT), mesh)
+    appraiser.energies(mesh)
+    half_edges = np.arange(3 * mesh.triangle_count)
+    corners, following = mesh.triangles.reshape(-1), next_corner(half_edges)
+    lowest = np.full(len(half_edges), np.inf)
+    for half_edge in half_edges:
+        origin, goal = corners[half_edge], corners[following[half_edge]]
+        around = mesh.triangles[(mesh.triangles == origin).any(axis=1)]
+        around = around[~(around == goal).any(axis=1)]
+        moved = mesh.vertices[np.where(around == origin, goal, around)]
+        lowest[half_edge] = heights_of(moved).min(initial=np.inf)
+    folded = appraiser.collapse_costs(half_edges) > 0.5 * IMPOSSIBLE
+    assert 20 < folded.sum() < len(half_edges) - 20
+    np.testing.assert_array_equal(folded, lowest < LEAST_HEIGHT)
+
+
+def test_measuring_a_part_gives_the_same_numbers(device: str) -> None:
+    """Any order, any number of changes, and none at all."""
+    mesh = mesh_of_seed(0)
+    appraiser = appraiser_of(device, LINEAR, noise(WIDTH, HEIGHT), mesh)
+    appraiser.energies(mesh)
+    for measure in (appraiser.flip_gains, appraiser.split_gains, appraiser.collapse_costs):
+        edges = mesh.edge_half_edges
+        everything = measure(edges)
+        order = np.random.default_rng(0).permutation(len(edges))[:17]
+        np.testing.assert_array_equal(measure(edges[order]), everything[order])
+        assert measure(edges[:0]).shape == (0,)
+
+
+def test_appraiser_forgets_a_picture_when_told(device: str) -> None:
+    """A mesh is measured once per picture; a larger mesh needs more memory."""
+    mesh = mesh_of_seed(0)
+    workspace = poisoned_workspace(Device(device), noise(WIDTH, HEIGHT), mesh, LINEAR)
+    appraiser = Appraiser(workspace, LEAST_HEIGHT)
+    first = appraiser.energies(mesh).copy()
+    gains = appraiser.flip_gains(mesh.edge_half_edges)
+    large = random_mesh(WIDTH, HEIGHT, 900, seed=5)
+    assert len(appraiser.energies(large)) == large.triangle_count
+    assert len(appraiser.flip_gains(large.edge_half_edges)) == large.edge_count
+    np.testing.assert_array_equal(appraiser.energies(mesh), first)
+    np.testing.assert_array_equal(appraiser.flip_gains(mesh.edge_half_edges), gains)
+    workspace.load_image(np.zeros((HEIGHT, WIDTH, 3), dtype=np.uint8))
+    appraiser.forget()
+    np.testing.assert_array_equal(appraiser.energies(mesh), 0.0)
+
+
+@pytest.mark.parametrize("calm", [False, True])
+@MODELS
+def test_flips_never_raise_the_energy(model: ColorModel, calm: bool, device: str) -> None:
+    """Without a vertex to move and a triangle to add, flips alone are left."""
+    mesh = mesh_of_seed(1)
+    appraiser = appraiser_of(device, model, waves(WIDTH, HEIGHT), mesh)
+    flips_only = Energy(relocated=0.0, calm_relocated=0.0)
+    energies = [total(appraiser, mesh)]
+    for _ in range(6):
+        mesh = flips_only.adapt(mesh, appraiser, Goal(mesh.triangle_count, calm=calm))
+        assert_valid(mesh)
+        energies.append(total(appraiser, mesh))
+    assert (np.diff(energies) <= LEAST_GAIN).all()
+    assert energies[-1] < energies[0]
+
+
+@pytest.mark.parametrize("count", [60, 180, 401])
+@pytest.mark.parametrize("name", TOPOLOGIES)
+def test_count_is_reached(name: str, count: int, device: str) -> None:
+    """After some rounds the number of triangles is the goal's, give or take one."""
+    mesh = random_mesh(WIDTH, HEIGHT, 10, seed=3)
+    appraiser = appraiser_of(device, COLOR_MODELS["constant"], noise(WIDTH, HEIGHT), mesh)
+    for _ in range(10):
+        mesh = TOPOLOGIES[name]().adapt(mesh, appraiser, Goal(count))
+        assert_valid(mesh)
+        assert mesh.triangle_count <= count + 1
+    assert abs(mesh.triangle_count - count) <= 1
+
+
+@pytest.mark.parametrize("name", TOPOLOGIES)
+@MODELS
+def test_every_topology_keeps_its_contract(model: ColorModel, name: str, device: str) -> None:
+    """A frozen dataclass of numbers; valid meshes; the argument and what stays are untouched."""
+    topology = TOPOLOGIES[name]()
+    assert dataclasses.is_dataclass(topology)
+    mesh = mesh_of_seed(0)
+    kept = mesh.vertices.copy(), mesh.triangles.copy()
+    appraiser = appraiser_of(device, model, waves(WIDTH, HEIGHT), mesh)
+    for calm in (False, True):
+        for threshold in (None, 4.0):
+            goal = Goal(mesh.triangle_count + 30, threshold, calm)
+            adapted = topology.adapt(mesh, appraiser, goal)
+            again = topology.adapt(mesh, appraiser, goal)
+            assert_valid(adapted)
+            np.testing.assert_array_equal(adapted.triangles, again.triangles)
+            _, old, new = np.intersect1d(mesh.vertex_ids, adapted.vertex_ids, return_indices=True)
+            np.testing.assert_array_equal(adapted.vertices[new], mesh.vertices[old])
+    np.testing.assert_array_equal(mesh.vertices, kept[0])
+    np.testing.assert_array_equal(mesh.triangles, kept[1])
+
+
+@pytest.mark.parametrize("name", TOPOLOGIES)
+def test_threshold_nobody_exceeds_splits_nothing(name: str, device: str) -> None:
+    """A picture of one colour has no error: no triangle is added."""
+    mesh = random_mesh(WIDTH, HEIGHT, 20, seed=6)
+    grey = np.full((HEIGHT, WIDTH, 3), 99, dtype=np.uint8)
+    appraiser = appraiser_of(device, LINEAR, grey, mesh)
+    adapted = TOPOLOGIES[name]().adapt(mesh, appraiser, Goal(10_000, 1.0))
+    assert adapted.triangle_count <= mesh.triangle_count
+
+
+@pytest.mark.parametrize("name", TOPOLOGIES)
+def test_calm_changes_less(name: str, device: str) -> None:
+    """From the same mesh fewer triangles change when a picture is followed."""
+    mesh = mesh_of_seed(0)
+    appraiser = appraiser_of(device, LINEAR, waves(WIDTH, HEIGHT), mesh)
+    changed = [
+        int((adapted.triangle_ids >= mesh.next_triangle_id).sum())
+        for adapted in (
+            TOPOLOGIES[name]().adapt(mesh, appraiser, Goal(mesh.triangle_count, calm=calm))
+            for calm in (True, False)
+        )
+    ]
+    assert changed[0] < changed[1]
+
+
+@SEEDS
+def test_delaunay_stays_delaunay(seed: int, device: str) -> None:
+    """Whatever was split and collapsed, the whole mesh is Delaunay; calmly a Delaunay one too."""
+    mesh = random_mesh(WIDTH, HEIGHT, 40, seed=seed)
+    appraiser = appraiser_of(device, LINEAR, waves(WIDTH, HEIGHT), mesh)
+    for calm in (False, True):
+        goal = Goal(mesh.triangle_count + 20, calm=calm)
+        mesh = TOPOLOGIES["delaunay"]().adapt(mesh, appraiser, goal)
+        assert_delaunay(mesh)
+
+
+def _changed(before: Mesh, after: Mesh) -> np.ndarray:
+    """Which triangles an edit made, [T] bool."""
+    return after.triangle_ids >= before.next_triangle_id
