@@ -10,8 +10,9 @@ wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 HEIGHT_FRACTION = 0.4
 """Largest step as a part of the smallest height around. Below 1/2 no triangle can turn inside
 out: its width shrinks by at most twice the largest step of its corners."""
-LEAST_HEIGHT = 0.05
-"""Heights do not shrink below this [px]: far above the 1/256 px to which coverage rounds."""
+LEAST_HEIGHT = 0.3
+"""Steps do not bring a height below this [px]: far above the 1/256 px to which coverage rounds, and
+where slivers of a followed picture collapse, so that no vertex walks into its own collapse."""
 
 GROW = 1.2
 SHRINK = 0.5
