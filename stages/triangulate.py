@@ -51,7 +51,7 @@ class TriangulateOptions:
         metadata={"help": "colour model that is optimised", "choices": tuple(COLOR_MODELS)},
     )
     iterations: int = field(
-        default=300, metadata={"help": "optimiser iterations for the first frame of a shot"}
+        default=240, metadata={"help": "optimiser iterations for the first frame of a shot"}
     )
     frame_iterations: int = field(
         default=8, metadata={"help": "optimiser iterations for each later frame"}

@@ -68,7 +68,7 @@ _YUV = ("yuv420p", "yuv422p", "yuv444p")
 _DEEP = ("yuv420p10le", "yuv422p10le", "yuv444p10le")
 
 ENCODERS = {
-    "h264": Encoder("libx264", _YUV + _DEEP, 18, 0, 51, {"preset": "veryfast"}, _PRESETS),
+    "h264": Encoder("libx264", _YUV + _DEEP, 18, 0, 51, {"preset": "superfast"}, _PRESETS),
     "h265": Encoder(
         "libx265",
         _YUV + _DEEP,
