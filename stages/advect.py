@@ -6,7 +6,7 @@ from stages.flows.field import FlowField
 from stages.mesh import Mesh, heights_of
 
 LOWEST = 0.25
-"""The flow may thin a triangle down to this height [px], or to half of a lower one."""
+"""The flow may thin a triangle down to this height [px]; a lower one it does not thin further."""
 HALVINGS = 6
 """A vertex that still folds a triangle after this many halvings of its step stays behind."""
 
@@ -54,10 +54,10 @@ def unfolded(mesh: Mesh, steps: np.ndarray) -> np.ndarray:
         steps: Motion of every vertex that respects the border [px], shape [V, 2].
 
     Returns:
-        Steps [px], shape [V, 2], which leave every triangle at least `LOWEST` or half of its
-        height before.
+        Steps [px], shape [V, 2], which leave every triangle at least `LOWEST` or its height
+        before.
     """
-    floor = np.minimum(LOWEST, 0.5 * mesh.heights)
+    floor = np.minimum(LOWEST, (1.0 - 1e-9) * mesh.heights)  # but for rounding
     halved = np.zeros(mesh.vertex_count, dtype=np.int64)
     shorter = steps
     # Ends because a triangle of three vertices at rest has its height from before.

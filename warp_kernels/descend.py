@@ -100,7 +100,8 @@ def limited(
     step: wp.vec2d, trust: wp.float64, height: wp.float64, dead_band: wp.float64
 ) -> wp.vec2d:
     """A step no longer than trust and heights allow, and none below the dead band."""
-    spare = wp.max(height - wp.float64(_LEAST_HEIGHT), wp.float64(0.1) * height)
+    # beside a needle that is lower already there is next to no room, or it would fade away
+    spare = wp.max(height - wp.float64(_LEAST_HEIGHT), wp.float64(0.005) * height)
     limit = wp.min(trust, wp.float64(_HEIGHT_FRACTION) * spare)
     length = wp.length(step)
     if length < dead_band:
