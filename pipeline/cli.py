@@ -66,7 +66,8 @@ def run_animate(arguments: argparse.Namespace) -> None:
     name = given.pop("preset")
     job = build_job(with_preset(given, read_preset(name) if name else {}))
     chosen = "none" if arguments.quiet and arguments.progress == "auto" else arguments.progress
-    with open_progress(chosen, verbose=arguments.verbose) as progress:
+    verbose = arguments.verbose or not (arguments.quiet or chosen == "none")
+    with open_progress(chosen, verbose=verbose) as progress:
         from pipeline.animate import animate
 
         result = animate(job, progress)

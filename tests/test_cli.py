@@ -278,7 +278,7 @@ def test_animate_hands_over_the_job(fake_animate: list, capsys) -> None:
     assert captured.out == ""
     assert "2 frames in 0.5 s (4.0 fps), mean rmse 21.00: out.mp4" in captured.err
     assert "warning: it breaks off" in captured.err
-    assert "bt709" not in captured.err
+    assert "note: as bt709" in captured.err
 
 
 @pytest.mark.parametrize(
@@ -290,7 +290,7 @@ def test_animate_hands_over_the_job(fake_animate: list, capsys) -> None:
     ],
 )
 def test_quiet_and_verbose(options, expected, fake_animate: list, capsys) -> None:
-    """Damage is always told, choices only when asked for."""
+    """Damage is always told, choices unless told to be quiet."""
     assert main(["animate", "in.mp4", "-o", "out.mp4", *options]) == 0
     assert capsys.readouterr().err == "".join(f"trimotion: {line}\n" for line in expected)
 
