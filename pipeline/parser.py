@@ -114,7 +114,12 @@ def _add_animate(commands: Any) -> None:
         help="auto is a bar on a terminal, else plain lines (default: auto)",
     )
     group.add_argument("-q", "--quiet", action="store_true", help="tell warnings and errors only")
-    group.add_argument("-v", "--verbose", action="store_true", help="tell choices that were made, even with --progress none")
+    group.add_argument(
+        "-v",
+        "--verbose",
+        action="store_true",
+        help="tell choices that were made, even with --progress none",
+    )
 
 
 def _add_info(commands: Any) -> None:

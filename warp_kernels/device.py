@@ -204,6 +204,8 @@ class Team:
                 )
                 for number in range(size)
             ]
+        self._abandoned = False
+        self._busy = [Lock() for _ in range(size)]
         self._starts = [_closed_lock() for _ in range(size)]
         for number in range(1, size):
             work = partial(_replay_forever, self, number)
@@ -219,16 +221,24 @@ class Team:
     def replay(self, number: int) -> None:
         """Do one thread's part of the job; the last phase ends with a meeting as well."""
         graphs, times = self._job
-        for _ in range(times):
-            wp.capture_launch(graphs[number])
+        with self._busy[number]:
+            for _ in range(times):
+                if self._abandoned:
+                    return
+                wp.capture_launch(graphs[number])
 
-    def wait_for_start(self, number: int) -> None:
-        """Sleep until there is a job for a thread."""
+    def wait_for_start(self, number: int) -> bool:
+        """Sleep until there is a job for a thread; whether the team goes on."""
         self._starts[number].acquire()
+        return not self._abandoned
 
     def abandon(self) -> None:
-        """Let nobody wait any more: the team is not used again."""
+        """Let nobody wait any more, and wait until nobody works: the team is not used again."""
+        self._abandoned = True
         self._flags.fill_(1)
+        for busy in self._busy:
+            busy.acquire()
+            busy.release()
 
     def _graphs_of(self, phases: Sequence[Phase]) -> list[Any]:
         key = tuple((id(phase), phase.shape) for phase in phases)
@@ -251,8 +261,7 @@ class Team:
 
 
 def _replay_forever(team: Team, number: int) -> None:
-    while True:
-        team.wait_for_start(number)
+    while team.wait_for_start(number):
         team.replay(number)
 
 
