@@ -39,7 +39,7 @@ class Energy:
     """A vertex moves elsewhere if its gain there exceeds its cost here this many times."""
     calm_flip: float = 0.05
     """In a followed picture a flip must save this part of its two triangles' energy."""
-    calm_relocated: float = 0.005
+    calm_relocated: float = 0.015
     """As `relocated`, in a followed picture."""
     calm_profit: float = 3.0
     """As `profit`, in a followed picture."""
