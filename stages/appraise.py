@@ -54,6 +54,6 @@ class Appraiser:
         """Energy that moving each origin into its destination adds [code value^2 px], [N]."""
         return self._survey.collapse_costs(half_edges)
 
-    def split_gains(self, half_edges: np.ndarray) -> np.ndarray:
-        """Energy that splitting each edge in the middle saves [code value^2 px], [N]."""
+    def split_gains(self, half_edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Energy that the best split of each edge saves [code value^2 px], [N], and its place."""
         return self._survey.split_gains(half_edges)

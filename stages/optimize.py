@@ -6,7 +6,7 @@ import numpy as np
 
 from stages.mesh import Mesh
 from warp_kernels.errors import OptionError
-from warp_kernels.workspace import Workspace
+from warp_kernels.workspace import DISPLACEMENT, Workspace
 
 
 @dataclass(frozen=True)
@@ -61,6 +61,7 @@ def optimize(
     *,
     trust_region: float | None = None,
     dead_band: float = 0.0,
+    displacement: float = DISPLACEMENT,
 ) -> Mesh:
     """Run iterations of gradient descent over the mesh that lies in the workspace.
 
@@ -71,6 +72,7 @@ def optimize(
         options: How vertices move.
         trust_region: Longest step [px], if not that of `options`.
         dead_band: Shorter steps are not taken [px].
+        displacement: Distance of the variants that give the slope [px].
 
     Returns:
         The same triangles over the new positions.
@@ -78,5 +80,11 @@ def optimize(
     Source: Lawonn & Guenther, Stylized Image Triangulation (2018), Sec. 3.2.
     """
     trust = options.trust_region if trust_region is None else trust_region
-    workspace.iterate(iterations, trust=trust, regularity=options.regularity, dead_band=dead_band)
+    workspace.iterate(
+        iterations,
+        trust=trust,
+        regularity=options.regularity,
+        dead_band=dead_band,
+        displacement=displacement,
+    )
     return mesh.moved(workspace.vertices())

@@ -13,24 +13,27 @@ from stages.refine import RefineOptions
 from stages.snapshot import Snapshot
 from stages.topology import TOPOLOGIES, Goal
 from stages.topology.goal import SLIVER_HEIGHT
+from stages.topology.growth import Growth
 from warp_kernels.color_model import COLOR_MODELS, ColorModel
 from warp_kernels.device import Device
 from warp_kernels.errors import OptionError
 from warp_kernels.solve import SUMS
 from warp_kernels.workspace import Workspace
 
-LAYOUT_SHARE = 0.5
-"""Part of the wanted triangles that the layout places; refinement places the rest."""
 FEW = 64
 """Triangles of the layout where a threshold decides how many there will be."""
+GROWING_SHARE = 0.6
+"""Part of the refinement during which a threshold's triangles are split."""
 REFINING_SHARE = 0.85
 """Part of a first frame's iterations during which the topology changes (the paper: 400 of 600)."""
-GROWING_SHARE = 0.6
-"""Part of those after which the number of triangles is reached."""
 ROUND = 8
 """Iterations between two looks at the topology of a first frame."""
+CATCHING_UP = 8
+"""More looks at the topology, if there are still too many triangles."""
 LAST_TRUST = 0.1
 """Trust region of the last iteration beside the first one's: it shrinks so that vertices settle."""
+LAST_DISPLACEMENT = 0.25
+"""Distance of the variants in the last iterations [px]: a whole pixel blurs where an edge lies."""
 SPRING = 1500.0
 """Strength of the temporal term [code value^2]: a vertex leaves the flow's path where the picture
 pulls harder than noise does."""
@@ -125,7 +128,8 @@ class Triangulator:
             rng: Randomness of the layout.
         """
         self._load(frame)
-        mesh = layout.build(frame.pixels, self._layout_count, rng)
+        count = self._growth.count(0.0, self.options.refine.triangles)
+        mesh = layout.build(frame.pixels, max(2, count), rng)
         return self._snapshot(frame, self._settle(self._refine(mesh)))
 
     def _load(self, frame: Frame) -> None:
@@ -161,23 +165,27 @@ class Triangulator:
         )
 
     @property
-    def _layout_count(self) -> int:
-        """Triangles of the first mesh: a part of the wanted number, or few for a threshold."""
+    def _growth(self) -> Growth:
+        """How the number of triangles develops: a threshold decides by itself, from few on."""
         refine = self.options.refine
-        count = FEW if refine.error is not None else round(LAYOUT_SHARE * refine.triangles)
-        return max(2, min(count, refine.triangles))
+        if refine.error is None:
+            return self._topology.growth
+        few = min(1.0, FEW / refine.triangles)
+        return Growth(start=few, peak=1.0, grown=GROWING_SHARE, settled=GROWING_SHARE)
 
     def _refine(self, mesh: Mesh) -> Mesh:
         """Alternate optimisation and changes of topology until the wanted number is reached."""
-        options = self.options
+        options, growth = self.options, self._growth
         rounds = max(1, int(options.iterations * REFINING_SHARE) // ROUND)
-        goal, start = options.refine.triangles, mesh.triangle_count
         for number in range(1, rounds + 1):
             load_mesh(self._workspace, mesh)
             mesh = optimize(self._workspace, mesh, ROUND, options.optimize)
-            grown = round(start * (goal / start) ** min(1.0, number / (GROWING_SHARE * rounds)))
-            target = Goal(min(grown, goal), options.refine.error)
-            mesh = self._topology.adapt(mesh, self._appraiser, target)
+            count = growth.count(number / rounds, options.refine.triangles)
+            goal = Goal(count, options.refine.error)
+            mesh = self._topology.adapt(mesh, self._appraiser, goal)
+        for _ in range(CATCHING_UP):  # where the rounds were too few for the way down
+            if mesh.triangle_count > goal.count + 1:
+                mesh = self._topology.adapt(mesh, self._appraiser, goal)
         return mesh
 
     def _settle(self, mesh: Mesh) -> Mesh:
@@ -192,7 +200,14 @@ class Triangulator:
         for begin in range(0, left, ROUND):
             trust = options.optimize.trust_region * LAST_TRUST ** (begin / left)
             steps = min(ROUND, left - begin)
-            mesh = optimize(self._workspace, mesh, steps, options.optimize, trust_region=trust)
+            mesh = optimize(
+                self._workspace,
+                mesh,
+                steps,
+                options.optimize,
+                trust_region=trust,
+                displacement=LAST_DISPLACEMENT,
+            )
         return mesh
 
     def _snapshot(self, frame: Frame, mesh: Mesh) -> Snapshot:

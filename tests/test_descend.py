@@ -76,6 +76,20 @@ def _fan_below(x: float, inner_x: float) -> Mesh:
     return mesh_of(points, rows, 20, 20)
 
 
+@MODELS
+@pytest.mark.parametrize("sums", ["edges", "fragments"])
+def test_a_narrow_probe_finds_the_place_of_edges(sums: str, model: ColorModel, device: str) -> None:
+    """A quarter of a pixel sees what a pixel has blurred; sums of another distance are void."""
+    mesh = random_mesh(WIDTH, HEIGHT, 30, seed=4)
+    totals = []
+    for displacement in (1.0, 0.25):
+        workspace = poisoned_workspace(Device(device), waves(WIDTH, HEIGHT), mesh, model, sums)
+        workspace.iterate(60, trust=0.5, regularity=1e-3)
+        workspace.iterate(30, trust=0.1, regularity=1e-3, displacement=displacement)
+        totals.append(workspace.energies()[:, 0].sum())
+    assert totals[1] < 0.995 * totals[0]
+
+
 def test_border_vertices_slide_and_corners_stay(device: str) -> None:
     """After many large steps the border is where it was, and its vertices have moved along it."""
     mesh = random_mesh(WIDTH, HEIGHT, 50, border=20)

@@ -10,14 +10,14 @@ from test_legalise import assert_delaunay
 
 from stages.appraise import Appraiser
 from stages.edits import collapse_edges, collapsible, flip_edges, flippable, split_edges
-from stages.mesh import Mesh, heights_of, next_corner
+from stages.mesh import Mesh, heights_of, next_corner, previous_corner
 from stages.topology import TOPOLOGIES, Goal
 from stages.topology.energy import LEAST_GAIN, Energy
 from stages.validate import assert_valid
 from tests.kernel_samples import noise, poisoned_workspace, random_mesh, waves
 from warp_kernels.color_model import COLOR_MODELS, LINEAR, ColorModel
 from warp_kernels.device import Device
-from warp_kernels.topology_gains import IMPOSSIBLE
+from warp_kernels.topology_gains import IMPOSSIBLE, SPLIT_PLACES
 
 WIDTH, HEIGHT = 61, 47
 LEAST_HEIGHT = 0.5
@@ -63,19 +63,48 @@ def test_flip_gains_are_what_flips_save(model: ColorModel, seed: int, device: st
 @SEEDS
 @MODELS
 def test_split_gains_are_what_splits_save(model: ColorModel, seed: int, device: str) -> None:
-    """Each split by itself, of inner edges and of those on the border."""
+    """Each split by itself at its own place, of inner edges and of those on the border."""
     mesh = mesh_of_seed(seed)
     appraiser = appraiser_of(device, model, noise(WIDTH, HEIGHT), mesh)
     before = total(appraiser, mesh)
     edges = mesh.edge_half_edges
-    gains = appraiser.split_gains(edges)
-    halves = [split_edges(mesh, [edge]) for edge in edges]
-    possible = np.array([split.heights[_changed(mesh, split)].min() for split in halves])
-    np.testing.assert_array_equal(gains > -IMPOSSIBLE, possible >= LEAST_HEIGHT)
+    gains, points = appraiser.split_gains(edges)
     chosen = np.flatnonzero(gains > -IMPOSSIBLE)
     assert (mesh.twins[edges[chosen]] < 0).any()
-    saved = [before - total(appraiser, halves[n]) for n in chosen]
+    saved = [before - total(appraiser, split_edges(mesh, [edges[n]], points[[n]])) for n in chosen]
     np.testing.assert_allclose(gains[chosen], saved, **TOLERANCE)
+
+
+@SEEDS
+def test_splits_take_the_best_place(seed: int, device: str) -> None:
+    """No place that is looked at saves more; where none is possible the split is not either."""
+    mesh = mesh_of_seed(seed)
+    appraiser = appraiser_of(device, LINEAR, noise(WIDTH, HEIGHT), mesh)
+    before = total(appraiser, mesh)
+    edges = mesh.edge_half_edges
+    gains, points = appraiser.split_gains(edges)
+    best = np.full(len(edges), -IMPOSSIBLE)
+    for along, across in SPLIT_PLACES:
+        for number, edge in enumerate(edges):
+            if across and mesh.twins[edge] < 0:
+                continue
+            point = split_place(mesh, int(edge), along, across)
+            try:
+                split = split_edges(mesh, [edge], [point])
+            except ValueError:
+                continue
+            if split.heights[_changed(mesh, split)].min() >= LEAST_HEIGHT:
+                best[number] = max(best[number], before - total(appraiser, split))
+    np.testing.assert_allclose(gains, best, **TOLERANCE)
+    assert (points != mesh.vertices[mesh.edge_vertices].mean(axis=1)).any()
+
+
+def split_place(mesh: Mesh, edge: int, along: float, across: float) -> np.ndarray:
+    """A place of `SPLIT_PLACES` beside an edge [px]."""
+    corners = mesh.vertices[mesh.triangles.reshape(-1)]
+    point = corners[edge] + along * (corners[next_corner(edge)] - corners[edge])
+    side = edge if across >= 0 else int(mesh.twins[edge])
+    return point + abs(across) * (corners[previous_corner(side)] - point)
 
 
 @SEEDS
@@ -119,12 +148,13 @@ def test_measuring_a_part_gives_the_same_numbers(device: str) -> None:
     mesh = mesh_of_seed(0)
     appraiser = appraiser_of(device, LINEAR, noise(WIDTH, HEIGHT), mesh)
     appraiser.energies(mesh)
-    for measure in (appraiser.flip_gains, appraiser.split_gains, appraiser.collapse_costs):
+    splits = (lambda edges, part=part: appraiser.split_gains(edges)[part] for part in (0, 1))
+    for measure in (appraiser.flip_gains, appraiser.collapse_costs, *splits):
         edges = mesh.edge_half_edges
         everything = measure(edges)
         order = np.random.default_rng(0).permutation(len(edges))[:17]
         np.testing.assert_array_equal(measure(edges[order]), everything[order])
-        assert measure(edges[:0]).shape == (0,)
+        assert len(measure(edges[:0])) == 0
 
 
 def test_appraiser_forgets_a_picture_when_told(device: str) -> None:
@@ -171,6 +201,34 @@ def test_count_is_reached(name: str, count: int, device: str) -> None:
         assert_valid(mesh)
         assert mesh.triangle_count <= count + 1
     assert abs(mesh.triangle_count - count) <= 1
+
+
+@MODELS
+def test_what_exceeds_the_count_goes(model: ColorModel, device: str) -> None:
+    """Triangles are taken away where they are missed least: most of the picture stays."""
+    mesh = random_mesh(WIDTH, HEIGHT, 150, seed=3)
+    picture = np.zeros((HEIGHT, WIDTH, 3), dtype=np.uint8)
+    picture[:, : WIDTH // 2] = noise(WIDTH // 2, HEIGHT)
+    appraiser = appraiser_of(device, model, picture, mesh)
+    count = mesh.triangle_count * 2 // 3
+    for _ in range(10):
+        mesh = Energy().adapt(mesh, appraiser, Goal(count))
+        assert_valid(mesh)
+    assert abs(mesh.triangle_count - count) <= 1
+    busy = mesh.vertices[mesh.triangles].mean(axis=1)[:, 0] < WIDTH // 2
+    assert busy.mean() > 0.8
+
+
+@pytest.mark.parametrize("name", TOPOLOGIES)
+@pytest.mark.parametrize("wanted", [2, 30, 1500])
+def test_growth_ends_where_it_shall(name: str, wanted: int) -> None:
+    """From the layout over a peak to the wanted number, without a jump."""
+    growth = TOPOLOGIES[name]().growth
+    counts = [growth.count(progress, wanted) for progress in np.linspace(0, 1, 200)]
+    assert counts[0] == round(growth.start * wanted)
+    assert counts[-1] == wanted
+    assert max(counts) <= growth.peak * wanted
+    assert np.abs(np.diff(counts)).max() <= max(1, 0.05 * wanted * growth.peak)
 
 
 @pytest.mark.parametrize("name", TOPOLOGIES)

@@ -3,7 +3,7 @@
 import warp as wp
 
 from warp_kernels.device import Device, Phase
-from warp_kernels.raster import to_fixed
+from warp_kernels.raster import SUBPIXELS, to_fixed
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 
@@ -22,6 +22,7 @@ _HEIGHT_FRACTION = wp.constant(HEIGHT_FRACTION)
 _LEAST_HEIGHT = wp.constant(LEAST_HEIGHT)
 _GROW = wp.constant(GROW)
 _SHRINK = wp.constant(SHRINK)
+_INVERSE_UNIT = wp.constant(1.0 / SUBPIXELS)
 _THIRD = wp.constant(1.0 / 3.0)  # a triangle is visited from three corners: Eq. 7
 
 
@@ -68,10 +69,12 @@ def look_around(
     energies: wp.array2d(dtype=wp.float64),
     fan_offsets: wp.array(dtype=int),
     fan_corners: wp.array(dtype=int),
+    delta: wp.float64,
 ) -> Surroundings:
-    """Gather over a vertex's corners, in a fixed order."""
+    """Gather over a vertex's corners, in a fixed order; `delta` is the variants' [px]."""
     around = Surroundings()
     around.height = wp.float64(1.0e30)
+    half_inverse = wp.float64(0.5) / delta
     first = fan_offsets[vertex]
     last = fan_offsets[vertex + 1]
     for n in range(first, last):
@@ -82,7 +85,7 @@ def look_around(
         for axis in range(2):
             plus = energies[triangle, variant + 2 * axis]
             minus = energies[triangle, variant + 2 * axis + 1]
-            around.slope[axis] += wp.float64(0.5) * (plus - minus)
+            around.slope[axis] += half_inverse * (plus - minus)
             around.curvature[axis] += plus + minus - wp.float64(2.0) * still
         corners = triangles[triangle]
         a = vertices[corners[0]]
@@ -90,6 +93,7 @@ def look_around(
         c = vertices[corners[2]]
         around.height = wp.min(around.height, smallest_height(a, b, c))
         around.ring += vertices[corners[(corner + 1) % 3]] + vertices[corners[(corner + 2) % 3]]
+    around.curvature = around.curvature / (delta * delta)
     # every inner neighbour was met twice; at the border the two outermost count half
     around.ring = around.ring / wp.float64(2 * (last - first))
     return around
@@ -122,6 +126,7 @@ def descend(
     fan_corners: wp.array(dtype=int),
     freedom: wp.array(dtype=wp.vec2d),
     anchors: wp.array(dtype=wp.vec3d),
+    probe: wp.array(dtype=int),
     controls: wp.array(dtype=wp.float64),
     # In and out:
     memory_out: wp.array(dtype=wp.vec4d),
@@ -137,7 +142,8 @@ def descend(
     regularity = controls[1]
     here = vertices[vertex]
     anchor = anchors[vertex]
-    around = look_around(vertex, vertices, triangles, energies, fan_offsets, fan_corners)
+    delta = wp.float64(probe[0]) * wp.float64(_INVERSE_UNIT)
+    around = look_around(vertex, vertices, triangles, energies, fan_offsets, fan_corners, delta)
     to_ring = here - around.ring
     memory = memory_out[vertex]
     step = wp.vec2d()
@@ -172,6 +178,7 @@ def record_descent(
     fan_corners: wp.array,
     freedom: wp.array,
     anchors: wp.array,
+    probe: wp.array,
     controls: wp.array,
     memory_out: wp.array,
     vertices_out: wp.array,
@@ -188,6 +195,7 @@ def record_descent(
         fan_corners: Corner numbers 3 t + c around each vertex, [3 T].
         freedom: 1 where a coordinate may change and 0 where the border holds it, [V] vec2d.
         anchors: Position [px] and weight [code value^2] of the temporal term, [V] vec3d.
+        probe: How far the variants' corners are displaced [1/256 px], [1].
         controls: Trust region [px], lambda [code value^2], shortest step that is taken [px], [3].
         memory_out: Each vertex's own trust region per axis [px] and its last step [px], read and
             written, [V] vec4d.
@@ -203,6 +211,7 @@ def record_descent(
         neighbours twice and the two along the border once, for it meets them that often.
     """
     inputs = [
-        vertices, triangles, energies, fan_offsets, fan_corners, freedom, anchors, controls,
+        vertices, triangles, energies, fan_offsets, fan_corners, freedom, anchors, probe,
+        controls,
     ]  # fmt: skip
     return device.record(descend, inputs, [memory_out, vertices_out, moved_out])

@@ -15,7 +15,7 @@ from warp_kernels.color_model import ColorModel
 from warp_kernels.device import Device, Phase
 from warp_kernels.image_tables import BLOCK_ROWS
 from warp_kernels.moments import area_settler, color_settler, moment_types, row_adders
-from warp_kernels.raster import SUBPIXELS, column_of, to_fixed, walk_edge
+from warp_kernels.raster import column_of, to_fixed, walk_edge
 from warp_kernels.variants import EDGE_VERSIONS, end_displacement
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
@@ -38,7 +38,7 @@ def _walk_starter(lanes: int) -> Any:
     long_lanes = wp.types.vector(length=lanes, dtype=wp.int64)
 
     @wp.func
-    def start_walks(a: wp.vec2i, b: wp.vec2i, first: int, height: int):
+    def start_walks(a: wp.vec2i, b: wp.vec2i, probe: int, first: int, height: int):
         """Versions from `first` on: per version `EdgeWalk`, then the first and the end row."""
         position = long_lanes()
         step = long_lanes()
@@ -48,8 +48,8 @@ def _walk_starter(lanes: int) -> Any:
         row = height
         end = int(0)
         for i in range(wp.static(lanes)):
-            start_move = end_displacement(first + i, 0, wp.static(SUBPIXELS))
-            end_move = end_displacement(first + i, 1, wp.static(SUBPIXELS))
+            start_move = end_displacement(first + i, 0, probe)
+            end_move = end_displacement(first + i, 1, probe)
             walk = walk_edge(a + start_move, b + end_move, height)
             position[i] = walk.position
             step[i] = walk.step
@@ -87,6 +87,7 @@ def _edge_kernel(model: ColorModel, versions: int, lanes: int) -> Any:
         vertices: wp.array(dtype=wp.vec2d),
         edges: wp.array(dtype=wp.vec2i),
         moved: wp.array(dtype=int),
+        probe: wp.array(dtype=int),
         table: wp.array(dtype=wp.vec4i),
         width: int,
         height: int,
@@ -105,7 +106,9 @@ def _edge_kernel(model: ColorModel, versions: int, lanes: int) -> Any:
             return  # the sums of an edge at rest still stand
         a = to_fixed(vertices[ends[0]])
         b = to_fixed(vertices[ends[1]])
-        position, step, row_begin, row_count, sign, row, end = start_walks(a, b, first, height)
+        position, step, row_begin, row_count, sign, row, end = start_walks(
+            a, b, probe[0], first, height
+        )
         color = color_lanes()
         area = area_lanes()
         pitch = wp.uint64(width + 1) * wp.uint64(wp.static(4 * block_words))
@@ -142,6 +145,7 @@ def record_edge_moments(
     vertices: wp.array,
     edges: wp.array,
     moved: wp.array,
+    probe: wp.array,
     table: wp.array,
     size: tuple[int, int],
     color_out: wp.array,
@@ -159,6 +163,7 @@ def record_edge_moments(
         edges: Vertex numbers of both ends, [E] vec2i.
         moved: 1 where a vertex has moved since the sums were taken, [V]; the nine versions of an
             edge at rest are left as they are.
+        probe: How far ends are displaced [1/256 px], [1].
         table: Prefix sums of the image, see `image_tables`.
         size: Width and height of the image [px].
         color_out: Colour moments, [E, versions] vectors of 4 K int64.
@@ -169,7 +174,7 @@ def record_edge_moments(
     Deviation: sums run along edges of prefix tables instead of over fragments; the integers are
         the same.
     """
-    inputs = [vertices, edges, moved, table, size[0], size[1]]
+    inputs = [vertices, edges, moved, probe, table, size[0], size[1]]
     # versions share vector registers on a CPU; on CUDA more threads are worth more
     lanes = 1 if device.is_cuda else versions
     kernel = _edge_kernel(model, versions, lanes)

@@ -11,7 +11,7 @@ import warp as wp
 from warp_kernels.color_model import ColorModel
 from warp_kernels.device import Device, Phase
 from warp_kernels.moments import area_sums_left_of, color_sums_of_pixel, moment_types
-from warp_kernels.raster import SUBPIXELS, first_row_below, to_fixed, winding
+from warp_kernels.raster import first_row_below, to_fixed, winding
 from warp_kernels.variants import TRIANGLE_VARIANTS, displacement
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
@@ -30,6 +30,7 @@ def _fragment_kernel(model: ColorModel) -> Any:
         # In:
         vertices: wp.array(dtype=wp.vec2d),
         triangles: wp.array(dtype=wp.vec3i),
+        probe: wp.array(dtype=int),
         pixels: wp.array2d(dtype=wp.vec3ub),
         powers: wp.array(dtype=powers_type),
         # Out:
@@ -49,7 +50,7 @@ def _fragment_kernel(model: ColorModel) -> Any:
         b = to_fixed(vertices[corners[1]])
         c = to_fixed(vertices[corners[2]])
         if variant > 0:
-            step = displacement((variant - 1) & 3, wp.static(SUBPIXELS))
+            step = displacement((variant - 1) & 3, probe[0])
             if variant <= 4:
                 a = a + step
             elif variant <= 8:
@@ -86,6 +87,7 @@ def record_fragment_moments(
     *,
     vertices: wp.array,
     triangles: wp.array,
+    probe: wp.array,
     pixels: wp.array,
     powers: wp.array,
     color_out: wp.array,
@@ -101,6 +103,7 @@ def record_fragment_moments(
         model: Fixes the moments.
         vertices: Positions [px], [V] vec2d.
         triangles: Corners, [T] vec3i.
+        probe: How far corners are displaced [1/256 px], [1].
         pixels: Code values, [H, W] vec3ub.
         powers: Sums of x^a left of each column, [W + 1] vectors.
         color_out: Colour moments, [T, 13] vectors of 4 K int64.
@@ -109,6 +112,6 @@ def record_fragment_moments(
     Source: Lawonn & Guenther (2018), Sec. 4.2.
     Deviation: the error follows from the moments, without a second pass over the fragments.
     """
-    inputs = [vertices, triangles, pixels, powers]
+    inputs = [vertices, triangles, probe, pixels, powers]
     kernel = _fragment_kernel(model)
     return device.record(kernel, inputs, [color_out, area_out], per_element=TRIANGLE_VARIANTS)

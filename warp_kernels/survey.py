@@ -44,6 +44,7 @@ class Survey:
             self._corners = device.empty(self._capacity, int)
             self._half_edges = device.empty(self._capacity, int)
             self._changes = device.empty(self._capacity, wp.float64)
+            self._points = device.empty(self._capacity, wp.vec2d)
         device.write(self._twins, twins)
         device.write(self._corners, corners)
 
@@ -55,9 +56,14 @@ class Survey:
         """Energy that each collapse of an origin adds [code value^2 px], [N]; huge if barred."""
         return self._measure("collapse", half_edges)
 
-    def split_gains(self, half_edges: np.ndarray) -> np.ndarray:
-        """Energy that splitting each edge in the middle saves [code value^2 px], [N]."""
-        return self._measure("split", half_edges)
+    def split_gains(self, half_edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The best split of each edge.
+
+        Returns:
+            Energy that it saves [code value^2 px], [N], and its place [px], [N, 2].
+        """
+        gains = self._measure("split", half_edges)
+        return gains, self._workspace.device.read(self._points, len(half_edges))
 
     def _measure(self, change: str, half_edges: np.ndarray) -> np.ndarray:
         device = self._workspace.device
@@ -83,11 +89,12 @@ class Survey:
             table=workspace.table,
             powers=workspace.powers,
             changes_out=self._changes,
+            points_out=self._points,
         )
         limits = {"height": workspace.size[1], "least_height": self._least_height}
         device, model = workspace.device, workspace.model
         if change == "flip":
             return record_flip_gains(device, model, arrays, **limits)
         if change == "split":
-            return record_split_gains(device, model, arrays, share=0.5, **limits)
+            return record_split_gains(device, model, arrays, **limits)
         return record_collapse_costs(device, model, arrays, **limits)

@@ -17,6 +17,10 @@ wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 IMPOSSIBLE = 1.0e30
 """Cost of a change that would turn a triangle inside out or make it too thin."""
 
+SPLIT_PLACES = ((0.5, 0.0), (0.3, 0.0), (0.7, 0.0), (0.5, 0.3), (0.5, -0.3))
+"""Where a new vertex is tried: how far along the edge, and from there how far towards the corner
+across it, on the left (above 0) or on the right. Edges on the border use those on the edge."""
+
 
 @dataclass(frozen=True, eq=False)
 class SurveyArrays:
@@ -42,6 +46,8 @@ class SurveyArrays:
     """Sums of x^a left of each column, [W + 1] vectors."""
     changes_out: wp.array
     """Change of energy [code value^2 px], [N] float64; its sign is the launcher's."""
+    points_out: wp.array
+    """Where a split puts its vertex [px], [N] vec2d."""
 
 
 @wp.func
@@ -168,11 +174,11 @@ def _split_kernel(model: ColorModel) -> Any:
         powers: wp.array(dtype=powers_type),
         height: int,
         least_height: wp.float64,
-        share: wp.float64,
         # Out:
         gains_out: wp.array(dtype=wp.float64),
+        points_out: wp.array(dtype=wp.vec2d),
     ):
-        """What the energy loses if one edge is split at a point between its ends."""
+        """What the energy loses if one edge is split at the best of several places."""
         number = span[0][0] + wp.tid()
         if number >= span[0][1]:
             return
@@ -181,22 +187,37 @@ def _split_kernel(model: ColorModel) -> Any:
         a = vertices[corners[side]]
         b = vertices[corners[corner_after(side)]]
         c = vertices[corners[corner_after(corner_after(side))]]
-        m = a + share * (b - a)
-        gain = energies[side / 3]
-        lower = wp.min(signed_height(a, m, c), signed_height(m, b, c))
+        d = c
+        before = energies[side / 3]
         if twin >= 0:
             d = vertices[corners[corner_after(corner_after(twin))]]
-            gain += energies[twin / 3]
-            lower = wp.min(lower, wp.min(signed_height(m, a, d), signed_height(b, m, d)))
-            if lower >= least_height:
-                gain -= energy(m, a, d, table, powers, height)
-                gain -= energy(b, m, d, table, powers, height)
-        if lower >= least_height:
-            gain -= energy(a, m, c, table, powers, height)
-            gain -= energy(m, b, c, table, powers, height)
-        else:
-            gain = -wp.float64(wp.static(IMPOSSIBLE))
-        gains_out[number] = gain
+            before += energies[twin / 3]
+        best = -wp.float64(wp.static(IMPOSSIBLE))
+        point = wp.float64(0.5) * (a + b)
+        for place in range(wp.static(len(SPLIT_PLACES))):
+            lift = wp.float64(wp.static(SPLIT_PLACES[place][1]))
+            m = a + wp.float64(wp.static(SPLIT_PLACES[place][0])) * (b - a)
+            if wp.static(SPLIT_PLACES[place][1] > 0.0):
+                m = m + lift * (c - m)
+            if wp.static(SPLIT_PLACES[place][1] < 0.0):
+                m = m - lift * (d - m)
+            lower = wp.min(signed_height(a, m, c), signed_height(m, b, c))
+            if twin >= 0:
+                lower = wp.min(lower, wp.min(signed_height(m, a, d), signed_height(b, m, d)))
+            possible = lower >= least_height
+            if wp.static(SPLIT_PLACES[place][1] != 0.0):
+                possible = possible and twin >= 0
+            if possible:
+                gain = before - energy(a, m, c, table, powers, height)
+                gain -= energy(m, b, c, table, powers, height)
+                if twin >= 0:
+                    gain -= energy(m, a, d, table, powers, height)
+                    gain -= energy(b, m, d, table, powers, height)
+                if gain > best:
+                    best = gain
+                    point = m
+        gains_out[number] = best
+        points_out[number] = point
 
     return split_gains
 
@@ -253,11 +274,10 @@ def record_split_gains(
     *,
     height: int,
     least_height: float,
-    share: float,
 ) -> Phase:
-    """Prepare the launch that measures the split of every edge at one place.
+    """Prepare the launch that measures the split of every edge at the best of `SPLIT_PLACES`.
 
-    It writes the energy saved, -IMPOSSIBLE where a triangle would be too thin.
+    It writes the energy saved, -IMPOSSIBLE where a triangle would be too thin, and the place.
 
     Args:
         device: Where to run.
@@ -265,11 +285,11 @@ def record_split_gains(
         arrays: What is read and written; half-edges stand for their edges.
         height: Rows of the image [px].
         least_height: Smallest height that the new triangles may have [px].
-        share: Where between origin (0) and destination (1) of the half-edge.
 
     Deviation: the paper splits the triangles of the largest error at their centroids (Sec. 3.4).
     """
     mesh = [arrays.half_edges, arrays.twins, arrays.corners, arrays.vertices, arrays.energies]
     picture = [arrays.table, arrays.powers, height]
-    inputs = [*mesh, *picture, wp.float64(least_height), wp.float64(share)]
-    return device.record(_split_kernel(model), inputs, [arrays.changes_out])
+    inputs = [*mesh, *picture, wp.float64(least_height)]
+    outputs = [arrays.changes_out, arrays.points_out]
+    return device.record(_split_kernel(model), inputs, outputs)

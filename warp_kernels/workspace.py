@@ -17,11 +17,16 @@ from warp_kernels.fit import record_fit
 from warp_kernels.fragments import record_fragment_moments
 from warp_kernels.image_tables import record_image_tables, table_length
 from warp_kernels.moments import check_size, column_powers, moment_types
+from warp_kernels.raster import SUBPIXELS
 from warp_kernels.solve import record_energies
 from warp_kernels.variants import EDGE_VERSIONS, TRIANGLE_VARIANTS
 
 FAR = 1e6
 """First trust region of a vertex [px]: the common one rules until steps turn round."""
+
+
+DISPLACEMENT = 1.0
+"""Distance between a triangle and its variants [px]: Delta of Eq. 11."""
 
 
 class Workspace:
@@ -51,6 +56,8 @@ class Workspace:
         self.table = self._empty(table_length(width, height, model), wp.vec4i)
         self.powers = wp.array(column_powers(width, model), dtype=types.powers, device=device.warp)
         self._controls = self._empty(3, wp.float64)
+        self._probe = self._empty(1, wp.int32)
+        self._displacement = 0.0
         self._tables = record_image_tables(device, model, pixels=self._pixels, table_out=self.table)
         self._counts = (0, 0, 0)
         self.generation = 0
@@ -112,7 +119,13 @@ class Workspace:
         self._resize()
 
     def iterate(
-        self, times: int, *, trust: float, regularity: float, dead_band: float = 0.0
+        self,
+        times: int,
+        *,
+        trust: float,
+        regularity: float,
+        dead_band: float = 0.0,
+        displacement: float = DISPLACEMENT,
     ) -> None:
         """Run whole iterations: moments, energies, gradient, step.
 
@@ -121,7 +134,10 @@ class Workspace:
             trust: Longest step [px].
             regularity: lambda of Eq. 7 [code value^2].
             dead_band: Shorter steps are not taken [px].
+            displacement: Delta of Eq. 11, a multiple of 1/256 [px]; a small one finds the very
+                place of an edge, a large one sees farther.
         """
+        self._displace(displacement)
         self.device.write(self._controls, np.array([trust, regularity, dead_band]))
         there, back = (
             [self._moments[front], self._energy, self._descents[front]] for front in (0, 1)
@@ -149,12 +165,14 @@ class Workspace:
         return self.device.read(self._vertices[self._front], self._counts[0])
 
     def energies(self) -> np.ndarray:
-        """E of all thirteen variants of every triangle as it stands, [T, 13] float64."""
+        """E of all thirteen variants of every triangle as it stands, 1 px apart, [T, 13]."""
+        self._displace(DISPLACEMENT)
         self.device.run([self._moments[self._front], self._energy])
         return self.device.read(self._energies, self._counts[1])
 
     def moments(self) -> tuple[np.ndarray, np.ndarray]:
         """Colour and area sums as they stand: [E, 9, .] with edges, [T, 13, .] with fragments."""
+        self._displace(DISPLACEMENT)
         self.device.run([self._moments[self._front]])
         count = self._counts[2] if self.sums == "edges" else self._counts[1]
         return self.device.read(self._color_sums, count), self.device.read(self._area_sums, count)
@@ -172,6 +190,14 @@ class Workspace:
             self.device.read(self.fit_energies, count),
             self.device.read(self._fit_counts, count),
         )
+
+    def _displace(self, displacement: float) -> None:
+        """Set the distance of the variants; sums taken at another one are void."""
+        if displacement != self._displacement:
+            self._displacement = displacement
+            units = np.array([round(displacement * SUBPIXELS)], dtype=np.int32)
+            self.device.write(self._probe, units)
+            self.device.write(self._moved, np.ones(self._counts[0], dtype=np.int32))
 
     def _grow(self) -> None:
         vertices, triangles, _ = self._counts
@@ -238,6 +264,7 @@ class Workspace:
                 fan_corners=self.fan_corners,
                 freedom=self._freedom,
                 anchors=self._anchors,
+                probe=self._probe,
                 controls=self._controls,
                 memory_out=self._memory,
                 vertices_out=self._vertices[1 - front],
@@ -255,6 +282,7 @@ class Workspace:
                 vertices=front,
                 edges=self._edges,
                 moved=self._moved,
+                probe=self._probe,
                 table=self.table,
                 size=self.size,
                 color_out=self._fit_color_sums,
@@ -282,6 +310,7 @@ class Workspace:
                 self.model,
                 vertices=vertices,
                 triangles=self.triangles,
+                probe=self._probe,
                 pixels=self._pixels,
                 powers=self.powers,
                 color_out=self._color_sums,
@@ -293,6 +322,7 @@ class Workspace:
             vertices=vertices,
             edges=self._edges,
             moved=self._moved,
+            probe=self._probe,
             table=self.table,
             size=self.size,
             color_out=self._color_sums,

@@ -1,6 +1,6 @@
 """How the edges of a mesh are kept: `TOPOLOGIES` names the ways for the command line.
 
-A topology is a frozen dataclass of parameters with one method
+A topology is a frozen dataclass of parameters, one of them its `growth`, with one method
 `adapt(mesh, appraiser, goal) -> Mesh`; a new one is a file and a line here.
 """
 
@@ -11,12 +11,18 @@ from stages.mesh import Mesh
 from stages.topology.delaunay import Delaunay
 from stages.topology.energy import Energy
 from stages.topology.goal import Goal
+from stages.topology.growth import Growth
 
 __all__ = ["TOPOLOGIES", "Goal", "Topology"]
 
 
 class Topology(Protocol):
     """What every member of `TOPOLOGIES` can do."""
+
+    @property
+    def growth(self) -> Growth:
+        """How the number of triangles develops in a first frame."""
+        ...
 
     def adapt(self, mesh: Mesh, appraiser: Appraiser, goal: Goal) -> Mesh:
         """Bring a mesh closer to a goal by edits; its vertices stay where they are."""

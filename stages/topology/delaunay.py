@@ -8,6 +8,10 @@ from stages.edits import legalise
 from stages.mesh import Mesh
 from stages.refine import split_worst
 from stages.topology.goal import SLIVER_HEIGHT, Goal
+from stages.topology.growth import Growth
+
+HALF = Growth(start=0.5, peak=1.0, grown=0.6, settled=0.6)
+"""Refinement places every second triangle."""
 
 
 @dataclass(frozen=True)
@@ -16,6 +20,9 @@ class Delaunay:
 
     Source: Lawonn & Guenther, Stylized Image Triangulation (2018), Sec. 3.4.
     """
+
+    growth: Growth = HALF
+    """How the number of triangles develops in a first frame."""
 
     def adapt(self, mesh: Mesh, appraiser: Appraiser, goal: Goal) -> Mesh:
         """Collapse, split and flip.
