@@ -88,9 +88,9 @@ def test_splits_take_the_best_place(seed: int, device: str) -> None:
         for number, edge in enumerate(edges):
             if across and mesh.twins[edge] < 0:
                 continue
-            point = split_place(mesh, int(edge), along, across)
+            point = split_place(mesh, edges[[number]], along, across)
             try:
-                split = split_edges(mesh, [edge], [point])
+                split = split_edges(mesh, edges[[number]], point)
             except ValueError:
                 continue
             if split.heights[_changed(mesh, split)].min() >= LEAST_HEIGHT:
@@ -99,11 +99,11 @@ def test_splits_take_the_best_place(seed: int, device: str) -> None:
     assert (points != mesh.vertices[mesh.edge_vertices].mean(axis=1)).any()
 
 
-def split_place(mesh: Mesh, edge: int, along: float, across: float) -> np.ndarray:
-    """A place of `SPLIT_PLACES` beside an edge [px]."""
+def split_place(mesh: Mesh, edge: np.ndarray, along: float, across: float) -> np.ndarray:
+    """A place of `SPLIT_PLACES` beside an edge [px], [1, 2]."""
     corners = mesh.vertices[mesh.triangles.reshape(-1)]
     point = corners[edge] + along * (corners[next_corner(edge)] - corners[edge])
-    side = edge if across >= 0 else int(mesh.twins[edge])
+    side = edge if across >= 0 else mesh.twins[edge]
     return point + abs(across) * (corners[previous_corner(side)] - point)
 
 

@@ -149,10 +149,13 @@ def _ranked_collapses(mesh: Mesh, appraiser: Appraiser, most: int) -> tuple[np.n
         appraiser: Has measured it.
         most: Number of vertices that may go.
     """
-    likely = np.argsort(_spread(mesh, appraiser), kind="stable")[: EXAMINED * most]
+    spread = np.where(mesh.on_left_right & mesh.on_top_bottom, np.inf, _spread(mesh, appraiser))
+    likely = np.argsort(spread, kind="stable")[: EXAMINED * most]
     chosen = np.zeros(mesh.vertex_count, dtype=bool)
     chosen[likely] = True
-    half_edges = np.flatnonzero(chosen[mesh.triangles.reshape(-1)])
+    origins = mesh.triangles.reshape(-1)
+    on_border = (mesh.on_left_right | mesh.on_top_bottom)[origins]
+    half_edges = np.flatnonzero(chosen[origins] & (~on_border | (mesh.twins < 0)))
     costs = appraiser.collapse_costs(half_edges) / 2
     order = np.argsort(costs, kind="stable")[: EXAMINED * most]
     return half_edges[order], costs[order]
