@@ -27,7 +27,8 @@ class Snapshot:
     """Per triangle and channel the coefficients of x^a y^b, x and y positions in the picture,
     in the order of `model.exponents` [code value / px^(a + b)], shape [T, 3, K] float64."""
     energies: np.ndarray
-    """E(T) of Eq. 4 [code value^2 px], shape [T] float64."""
+    """E(T) of Eq. 4 [code value^2 px], of RGB whatever the space that was optimised, shape [T]
+    float64."""
     counts: np.ndarray
     """Pixels covered, shape [T] int64."""
 

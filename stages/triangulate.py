@@ -11,6 +11,7 @@ from stages.mesh import Mesh
 from stages.optimize import OptimizeOptions, load_mesh, optimize
 from stages.refine import RefineOptions
 from stages.snapshot import Snapshot
+from stages.spaces import SPACES
 from stages.topology import TOPOLOGIES, Goal
 from stages.topology.goal import SLIVER_HEIGHT
 from warp_kernels.color_model import COLOR_MODELS, ColorModel
@@ -67,6 +68,13 @@ class TriangulateOptions:
         default="edges",
         metadata={"help": "how moments are summed; equal results", "choices": SUMS},
     )
+    space: str = field(
+        default="rgb",
+        metadata={
+            "help": "colour space in which the error is measured; colours are fitted in RGB",
+            "choices": tuple(SPACES),
+        },
+    )
     optimize: OptimizeOptions = field(default_factory=OptimizeOptions)
     refine: RefineOptions = field(default_factory=RefineOptions)
 
@@ -75,7 +83,12 @@ class TriangulateOptions:
             if getattr(self, name) < 0:
                 flag = name.replace("_", "-")
                 raise OptionError(f"--{flag} {getattr(self, name)}: must be 0 or more")
-        for name, known in (("color", COLOR_MODELS), ("topology", TOPOLOGIES), ("sums", SUMS)):
+        for name, known in (
+            ("color", COLOR_MODELS),
+            ("topology", TOPOLOGIES),
+            ("sums", SUMS),
+            ("space", SPACES),
+        ):
             if getattr(self, name) not in known:
                 raise OptionError(
                     f"--{name} {getattr(self, name)}: unknown; choose from {', '.join(known)}"
@@ -95,7 +108,7 @@ class Triangulator:
         size: Width and height of the frames [px].
         options: How a picture becomes triangles.
         drawn: The colour model that will be drawn; the snapshots' colours fit it if it has more
-            terms than the optimised one.
+            terms than the optimised one. They are fitted in RGB whatever the space of the error.
 
     Raises:
         OptionError: If the frames are too large.
@@ -109,12 +122,16 @@ class Triangulator:
         drawn: ColorModel | None = None,
     ) -> None:
         self.options = options
+        self._space = SPACES[options.space]()
         self._workspace = Workspace(device, size, options.model, options.sums)
         self._topology = TOPOLOGIES[options.topology]()
         self._appraiser = Appraiser(self._workspace, SLIVER_HEIGHT)
         self._fitting = self._workspace
-        if drawn is not None and drawn.degree > options.model.degree:
-            self._fitting = Workspace(device, size, drawn)
+        fitted = options.model
+        if drawn is not None and drawn.degree > fitted.degree:
+            fitted = drawn
+        if fitted is not options.model or options.space != "rgb":
+            self._fitting = Workspace(device, size, fitted)
 
     def first(self, frame: Frame, layout: Layout, rng: np.random.Generator) -> Snapshot:
         """Triangulate a frame from scratch.
@@ -129,7 +146,7 @@ class Triangulator:
         return self._snapshot(frame, self._settle(self._refine(mesh)))
 
     def _load(self, frame: Frame) -> None:
-        self._workspace.load_image(frame.pixels)
+        self._workspace.load_image(self._space.convert(frame.pixels))
         self._appraiser.forget()
 
     def next(self, frame: Frame, seed: Mesh) -> Snapshot:
@@ -154,7 +171,7 @@ class Triangulator:
         old = np.searchsorted(seed.vertex_ids, mesh.vertex_ids)
         known = mesh.vertex_ids < seed.next_vertex_id
         springs[known, :2] = seed.vertices[old[known]]
-        springs[known, 2] = SPRING
+        springs[known, 2] = SPRING * self._space.scale
         load_mesh(self._workspace, mesh, springs)
         return optimize(
             self._workspace, mesh, iterations, self.options.optimize, dead_band=DEAD_BAND
