@@ -1,11 +1,11 @@
 """One frame, from a seed mesh to a snapshot: the only file that orders the steps."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from stages.appraise import Appraiser
-from stages.frame import Frame
+from stages.frame import WHITE, Frame
 from stages.layouts import Layout
 from stages.mesh import Mesh
 from stages.optimize import OptimizeOptions, load_mesh, optimize
@@ -109,6 +109,7 @@ class Triangulator:
         options: How a picture becomes triangles.
         drawn: The colour model that will be drawn; the snapshots' colours fit it if it has more
             terms than the optimised one. They are fitted in RGB whatever the space of the error.
+        weighted: Whether every frame brings weights.
 
     Raises:
         OptionError: If the frames are too large.
@@ -120,10 +121,14 @@ class Triangulator:
         size: tuple[int, int],
         options: TriangulateOptions,
         drawn: ColorModel | None = None,
+        *,
+        weighted: bool = False,
     ) -> None:
-        self.options = options
         self._space = SPACES[options.space]()
-        self._workspace = Workspace(device, size, options.model, options.sums)
+        self._white = WHITE if weighted else 1
+        self._scale = self._space.scale * self._white
+        self.options = _against(options, self._scale, self._white)
+        self._workspace = Workspace(device, size, options.model, options.sums, weighted)
         self._topology = TOPOLOGIES[options.topology]()
         self._appraiser = Appraiser(self._workspace, SLIVER_HEIGHT)
         self._fitting = self._workspace
@@ -131,7 +136,7 @@ class Triangulator:
         if drawn is not None and drawn.degree > fitted.degree:
             fitted = drawn
         if fitted is not options.model or options.space != "rgb":
-            self._fitting = Workspace(device, size, fitted)
+            self._fitting = Workspace(device, size, fitted, weighted=weighted)
 
     def first(self, frame: Frame, layout: Layout, rng: np.random.Generator) -> Snapshot:
         """Triangulate a frame from scratch.
@@ -146,7 +151,7 @@ class Triangulator:
         return self._snapshot(frame, self._settle(self._refine(mesh)))
 
     def _load(self, frame: Frame) -> None:
-        self._workspace.load_image(self._space.convert(frame.pixels))
+        self._workspace.load_image(self._space.convert(frame.pixels), frame.weights)
         self._appraiser.forget()
 
     def next(self, frame: Frame, seed: Mesh) -> Snapshot:
@@ -171,7 +176,7 @@ class Triangulator:
         old = np.searchsorted(seed.vertex_ids, mesh.vertex_ids)
         known = mesh.vertex_ids < seed.next_vertex_id
         springs[known, :2] = seed.vertices[old[known]]
-        springs[known, 2] = SPRING * self._space.scale
+        springs[known, 2] = SPRING * self._scale
         load_mesh(self._workspace, mesh, springs)
         return optimize(
             self._workspace, mesh, iterations, self.options.optimize, dead_band=DEAD_BAND
@@ -216,9 +221,10 @@ class Triangulator:
         """Fit the colours to the mesh that lies in the workspace, just optimised."""
         fitting = self._fitting
         if fitting is not self._workspace:
-            fitting.load_image(frame.pixels)
+            fitting.load_image(frame.pixels, frame.weights)
             load_mesh(fitting, mesh)
         coefficients, energies, counts = fitting.fit()
+        weights = frame.weights
         return Snapshot(
             frame_index=frame.index,
             pts=frame.pts,
@@ -226,6 +232,22 @@ class Triangulator:
             mesh=mesh,
             model=fitting.model,
             coefficients=coefficients,
-            energies=energies,
+            energies=energies / self._white,
             counts=counts,
+            weight=None if weights is None else float(weights.sum(dtype=np.int64)) / WHITE,
         )
+
+
+def _against(options: TriangulateOptions, scale: float, white: int) -> TriangulateOptions:
+    """Options that weigh against energies of another scale what they say for those of RGB.
+
+    Args:
+        options: As the user gave them; `error` is in code values of the space already.
+        scale: Energy of an error over its energy in RGB, typically [1].
+        white: Weight of a pixel that counts fully.
+    """
+    pull, refine = options.optimize, options.refine
+    if refine.error is not None:
+        refine = replace(refine, error=refine.error * white**0.5)
+    pull = replace(pull, regularity=pull.regularity * scale)
+    return replace(options, optimize=pull, refine=refine)
