@@ -125,6 +125,7 @@ class Triangulator:
         weighted: bool = False,
     ) -> None:
         self._space = SPACES[options.space]()
+        # Energies of a weighted picture are sums of weight times error: white counts 255 times.
         self._white = WHITE if weighted else 1
         self._scale = self._space.scale * self._white
         self.options = _against(options, self._scale, self._white)
