@@ -19,6 +19,7 @@ from stages.media.encode import Encoder
 from stages.render import Renderer
 from stages.snapshot import Snapshot
 from stages.triangulate import Triangulator
+from stages.weights import open_weights
 from warp_kernels.color_model import CONSTANT, LINEAR
 from warp_kernels.device import Device
 from warp_kernels.errors import MediaError
@@ -66,7 +67,7 @@ def animate(job: Job, progress: Progress) -> Animated:
         progress: Told of every finished frame.
 
     Raises:
-        MediaError: If the source cannot be read.
+        MediaError: If the source or the map of weights cannot be read.
         OptionError: If an option does not fit the source.
         OutputError: If the output cannot be written.
     """
@@ -77,14 +78,15 @@ def animate(job: Job, progress: Progress) -> Animated:
         picture = (info.width, info.height)
         output = job.size_for(picture)
         check_output(job.output, info, output, job.encode, job.frame_range)
+        weights = open_weights(job.weights, picture, job.frame_range)
         device = Device(job.device, job.threads)
         styles = job.styles or (_plain_style(job),)
-        drawn = LINEAR if any(style.degree > 0 for style in styles) else CONSTANT
-        triangulator = Triangulator(device, picture, job.triangulate, drawn)
+        triangulator = _triangulator(job, device, picture, styles)
         renderer = Renderer(device, picture, output, styles)
         encoder = open_encoder(job.output, info, output, job.encode, job.frame_range)
         total = _expected(job, info.frame_count)
-        steps = ahead(_with_motion(with_shots(decoder, job.cuts), job), DECODED_AHEAD)
+        shot_frames = with_shots(weights.beside(decoder), job.cuts)
+        steps = ahead(_with_motion(shot_frames, job), DECODED_AHEAD)
         with encoder, closing(steps), Behind(_Writer(renderer, encoder), SOLVED_BEHIND) as writer:
             for snapshot in _solve(steps, triangulator, job):
                 writer.put(snapshot)
@@ -96,9 +98,18 @@ def animate(job: Job, progress: Progress) -> Animated:
         frames=len(errors),
         seconds=perf_counter() - begun,
         mean_rmse=float(np.mean(errors)),
-        warnings=tuple(decoder.warnings),
-        notes=(*decoder.notes, *encoder.notes),
+        warnings=(*decoder.warnings, *weights.warnings),
+        notes=(*decoder.notes, *weights.notes, *encoder.notes),
     )
+
+
+def _triangulator(
+    job: Job, device: Device, size: tuple[int, int], styles: tuple[Style, ...]
+) -> Triangulator:
+    """What makes snapshots for the styles that will be drawn."""
+    drawn = LINEAR if any(style.degree > 0 for style in styles) else CONSTANT
+    weighted = job.weights is not None
+    return Triangulator(device, size, job.triangulate, drawn, weighted=weighted)
 
 
 def _with_motion(shot_frames: Iterable[ShotFrame], job: Job) -> Iterator[Step]:

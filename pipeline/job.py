@@ -72,6 +72,16 @@ class Job:
         },
     )
     """Estimates the motion between frames."""
+    weights: str | None = field(
+        default=None,
+        metadata={
+            "help": "grey picture, numbered stills or video of the source's size: errors count "
+            "most where it is white, a 255th of that where it is black",
+            "metavar": "MAP",
+            "group": "triangles",
+        },
+    )
+    """Where errors count more: a still for all frames, or a clip with a picture for each."""
     triangulate: TriangulateOptions = field(default_factory=TriangulateOptions)
     """How one picture becomes triangles."""
     styles: tuple[Style, ...] = field(

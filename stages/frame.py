@@ -5,13 +5,16 @@ from fractions import Fraction
 
 import numpy as np
 
+WHITE = 255
+"""Weight of a pixel whose errors count fully."""
+
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Frame:
     """A picture of the source, upright, in full-range RGB.
 
     Raises:
-        ValueError: If `pixels` is not [H, W, 3] uint8.
+        ValueError: If `pixels` is not [H, W, 3] uint8, or `weights` not [H, W] uint8.
     """
 
     index: int
@@ -22,12 +25,22 @@ class Frame:
     """Seconds per unit of `pts`."""
     pixels: np.ndarray
     """Code values [0..255], shape [H, W, 3] uint8, C-contiguous."""
+    weights: np.ndarray | None = None
+    """How much an error at each pixel counts [1..WHITE], shape [H, W] uint8; None for all alike."""
 
     def __post_init__(self) -> None:
         if self.pixels.ndim != 3 or self.pixels.shape[2] != 3 or self.pixels.dtype != np.uint8:
             raise ValueError(
                 f"a frame's pixels must be [H, W, 3] uint8, "
                 f"got {self.pixels.shape} {self.pixels.dtype}"
+            )
+        weights = self.weights
+        if weights is not None and (
+            weights.shape != self.pixels.shape[:2] or weights.dtype != np.uint8
+        ):
+            raise ValueError(
+                f"the weights of a frame of {self.pixels.shape[:2]} must be uint8 of that shape, "
+                f"got {weights.shape} {weights.dtype}"
             )
 
     @property

@@ -1,16 +1,17 @@
 """One frame, from a seed mesh to a snapshot: the only file that orders the steps."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from stages.appraise import Appraiser
-from stages.frame import Frame
+from stages.frame import WHITE, Frame
 from stages.layouts import Layout
 from stages.mesh import Mesh
 from stages.optimize import OptimizeOptions, load_mesh, optimize
 from stages.refine import RefineOptions
 from stages.snapshot import Snapshot
+from stages.spaces import SPACES
 from stages.topology import TOPOLOGIES, Goal
 from stages.topology.goal import SLIVER_HEIGHT
 from stages.topology.growth import Growth
@@ -70,6 +71,13 @@ class TriangulateOptions:
         default="edges",
         metadata={"help": "how moments are summed; equal results", "choices": SUMS},
     )
+    space: str = field(
+        default="rgb",
+        metadata={
+            "help": "colour space in which the error is measured; colours are fitted in RGB",
+            "choices": tuple(SPACES),
+        },
+    )
     optimize: OptimizeOptions = field(default_factory=OptimizeOptions)
     refine: RefineOptions = field(default_factory=RefineOptions)
 
@@ -78,7 +86,12 @@ class TriangulateOptions:
             if getattr(self, name) < 0:
                 flag = name.replace("_", "-")
                 raise OptionError(f"--{flag} {getattr(self, name)}: must be 0 or more")
-        for name, known in (("color", COLOR_MODELS), ("topology", TOPOLOGIES), ("sums", SUMS)):
+        for name, known in (
+            ("color", COLOR_MODELS),
+            ("topology", TOPOLOGIES),
+            ("sums", SUMS),
+            ("space", SPACES),
+        ):
             if getattr(self, name) not in known:
                 raise OptionError(
                     f"--{name} {getattr(self, name)}: unknown; choose from {', '.join(known)}"
@@ -98,7 +111,8 @@ class Triangulator:
         size: Width and height of the frames [px].
         options: How a picture becomes triangles.
         drawn: The colour model that will be drawn; the snapshots' colours fit it if it has more
-            terms than the optimised one.
+            terms than the optimised one. They are fitted in RGB whatever the space of the error.
+        weighted: Whether every frame brings weights.
 
     Raises:
         OptionError: If the frames are too large.
@@ -110,14 +124,23 @@ class Triangulator:
         size: tuple[int, int],
         options: TriangulateOptions,
         drawn: ColorModel | None = None,
+        *,
+        weighted: bool = False,
     ) -> None:
-        self.options = options
-        self._workspace = Workspace(device, size, options.model, options.sums)
+        self._space = SPACES[options.space]()
+        # Energies of a weighted picture are sums of weight times error: white counts 255 times.
+        self._white = WHITE if weighted else 1
+        self._scale = self._space.scale * self._white
+        self.options = _against(options, self._scale, self._white)
+        self._workspace = Workspace(device, size, options.model, options.sums, weighted)
         self._topology = TOPOLOGIES[options.topology]()
         self._appraiser = Appraiser(self._workspace, SLIVER_HEIGHT)
         self._fitting = self._workspace
-        if drawn is not None and drawn.degree > options.model.degree:
-            self._fitting = Workspace(device, size, drawn)
+        fitted = options.model
+        if drawn is not None and drawn.degree > fitted.degree:
+            fitted = drawn
+        if fitted is not options.model or options.space != "rgb":
+            self._fitting = Workspace(device, size, fitted, weighted=weighted)
 
     def first(self, frame: Frame, layout: Layout, rng: np.random.Generator) -> Snapshot:
         """Triangulate a frame from scratch.
@@ -133,7 +156,7 @@ class Triangulator:
         return self._snapshot(frame, self._settle(self._refine(mesh)))
 
     def _load(self, frame: Frame) -> None:
-        self._workspace.load_image(frame.pixels)
+        self._workspace.load_image(self._space.convert(frame.pixels), frame.weights)
         self._appraiser.forget()
 
     def next(self, frame: Frame, seed: Mesh) -> Snapshot:
@@ -158,7 +181,7 @@ class Triangulator:
         old = np.searchsorted(seed.vertex_ids, mesh.vertex_ids)
         known = mesh.vertex_ids < seed.next_vertex_id
         springs[known, :2] = seed.vertices[old[known]]
-        springs[known, 2] = SPRING
+        springs[known, 2] = SPRING * self._scale
         load_mesh(self._workspace, mesh, springs)
         return optimize(
             self._workspace, mesh, iterations, self.options.optimize, dead_band=DEAD_BAND
@@ -214,9 +237,10 @@ class Triangulator:
         """Fit the colours to the mesh that lies in the workspace, just optimised."""
         fitting = self._fitting
         if fitting is not self._workspace:
-            fitting.load_image(frame.pixels)
+            fitting.load_image(frame.pixels, frame.weights)
             load_mesh(fitting, mesh)
         coefficients, energies, counts = fitting.fit()
+        weights = frame.weights
         return Snapshot(
             frame_index=frame.index,
             pts=frame.pts,
@@ -224,6 +248,22 @@ class Triangulator:
             mesh=mesh,
             model=fitting.model,
             coefficients=coefficients,
-            energies=energies,
+            energies=energies / self._white,
             counts=counts,
+            weight=None if weights is None else float(weights.sum(dtype=np.int64)) / WHITE,
         )
+
+
+def _against(options: TriangulateOptions, scale: float, white: int) -> TriangulateOptions:
+    """Options that weigh against energies of another scale what they say for those of RGB.
+
+    Args:
+        options: As the user gave them; `error` is in code values of the space already.
+        scale: Energy of an error over its energy in RGB, typically [1].
+        white: Weight of a pixel that counts fully.
+    """
+    pull, refine = options.optimize, options.refine
+    if refine.error is not None:
+        refine = replace(refine, error=refine.error * white**0.5)
+    pull = replace(pull, regularity=pull.regularity * scale)
+    return replace(options, optimize=pull, refine=refine)

@@ -38,6 +38,7 @@ USAGE_ERRORS = [
     ("--frame-iterations -1", "-1"),
     ("--topology torus", "delaunay"),
     ("--sums guess", "fragments"),
+    ("--space hsv", "oklab"),
     ("--regularity nan", "nan"),
     ("--regularity -1", "-1"),
     ("--trust-region 0", "--trust-region 0"),

@@ -191,7 +191,14 @@ def test_no_iteration_is_possible(device: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "wrong", [{"iterations": -1}, {"color": "cubic"}, {"topology": "x"}, {"sums": "pixels"}]
+    "wrong",
+    [
+        {"iterations": -1},
+        {"color": "cubic"},
+        {"topology": "x"},
+        {"sums": "pixels"},
+        {"space": "hsv"},
+    ],
 )
 def test_impossible_options_are_refused(wrong: dict) -> None:
     """The message names flag and value."""

@@ -37,13 +37,19 @@ class Workspace:
         size: Width and height of the picture [px].
         model: The colour model to optimise.
         sums: "edges", or "fragments" for the paper's own way.
+        weighted: Whether pixels have weights; placeholder.
 
     Raises:
         OptionError: If the picture is so large that a sum could leave its integers.
     """
 
     def __init__(
-        self, device: Device, size: tuple[int, int], model: ColorModel, sums: str = "edges"
+        self,
+        device: Device,
+        size: tuple[int, int],
+        model: ColorModel,
+        sums: str = "edges",
+        weighted: bool = False,
     ) -> None:
         check_size(*size)
         self.device = device
@@ -65,12 +71,15 @@ class Workspace:
         self._front = 0
         self._allocate(vertices=512, triangles=1024)
 
-    def load_image(self, pixels: np.ndarray) -> None:
+    def load_image(self, pixels: np.ndarray, weights: np.ndarray | None = None) -> None:
         """Take in a picture and build its prefix tables.
 
         Args:
             pixels: Code values, [H, W, 3] uint8.
+            weights: Weights, [H, W] uint8; placeholder, not summed yet.
         """
+        if weights is not None:
+            raise NotImplementedError("weights are not summed yet")
         self.device.write(self._pixels, pixels)
         self.device.run([self._tables])
 

@@ -13,6 +13,9 @@ from av.video.reformatter import ColorRange, Colorspace, Interpolation, VideoRef
 FLAGS = int(Interpolation.BICUBIC | Interpolation.ACCURATE_RND | Interpolation.FULL_CHR_H_INT)
 """The default flags bias colours by about one code value; these do not."""
 
+WHITE = 255
+"""Code value of white paper."""
+
 _BT709 = 1
 _FULL, _LIMITED = int(ColorRange.JPEG), int(ColorRange.MPEG)
 _MATRICES = {
@@ -75,15 +78,17 @@ def read_color(frame: VideoFrame) -> ColorReading:
 class RgbReader:
     """Converts decoded frames to upright RGB of one size; keeps its converter between frames."""
 
-    def __init__(self, width: int, height: int) -> None:
+    def __init__(self, width: int, height: int, paper: int = WHITE) -> None:
         """Prepare for a source.
 
         Args:
             width: Width of every result [px]; frames of another size are scaled to it.
             height: Height of every result [px].
+            paper: Grey that shows through transparent pixels [code value].
         """
         self.saw_transparency = False
-        """Whether a frame had transparent pixels, which are shown over white."""
+        """Whether a frame had transparent pixels, through which the paper shows."""
+        self._paper = paper
         self._size = (width, height)
         self._reformatter = VideoReformatter()
 
@@ -98,7 +103,7 @@ class RgbReader:
             Code values, [H, W, 3] uint8.
         """
         if has_alpha(frame):
-            return self._over_white(self._convert(frame, color, "rgba"))
+            return self._over_paper(self._convert(frame, color, "rgba"))
         pixels = self._convert(frame, color, "rgb24")
         if not color.full_range and frame.format.name.startswith(("gray", "ya")):
             pixels = _EXPAND_GRAY[pixels]
@@ -129,12 +134,12 @@ class RgbReader:
         )
         return np.ascontiguousarray(converted.to_ndarray())
 
-    def _over_white(self, rgba: np.ndarray) -> np.ndarray:
+    def _over_paper(self, rgba: np.ndarray) -> np.ndarray:
         alpha = rgba[..., 3]
         if alpha.min() == 255:
             return np.ascontiguousarray(rgba[..., :3])
         self.saw_transparency = True
-        return over_white(rgba)
+        return over_paper(rgba, self._paper)
 
 
 class YuvWriter:
@@ -196,17 +201,18 @@ def tag_bt709(target: "VideoFrame | av.VideoCodecContext") -> None:
     target.color_trc = _BT709
 
 
-def over_white(rgba: np.ndarray) -> np.ndarray:
-    """Lay a picture over white paper.
+def over_paper(rgba: np.ndarray, paper: int = WHITE) -> np.ndarray:
+    """Lay a picture over paper.
 
     Args:
         rgba: Code values with straight alpha, [H, W, 4] uint8.
+        paper: Grey of the paper [code value].
 
     Returns:
         Code values, [H, W, 3] uint8.
     """
     alpha = rgba[..., 3:].astype(np.uint32)
-    mixed = rgba[..., :3] * alpha + 255 * (255 - alpha)
+    mixed = rgba[..., :3] * alpha + paper * (255 - alpha)
     return ((mixed + 127) // 255).astype(np.uint8)
 
 

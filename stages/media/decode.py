@@ -9,7 +9,7 @@ import numpy as np
 from av.video.frame import VideoFrame
 
 from stages.frame import Frame
-from stages.media.color import RgbReader, read_color
+from stages.media.color import WHITE, RgbReader, read_color
 from stages.media.container import DAMAGE, reason_of
 from stages.media.deinterlace import deinterlace
 from stages.media.frame_index import seek_to_frame
@@ -34,6 +34,7 @@ def open_decoder(
     *,
     max_pixels: int = DEFAULT_MAX_PIXELS,
     threads: int = 0,
+    paper: int = WHITE,
 ) -> "Decoder":
     """Open a source for reading its frames.
 
@@ -42,6 +43,7 @@ def open_decoder(
         frame_range: The frames wanted. Stills of a sequence go by the number in their name.
         max_pixels: Largest picture that is opened [px].
         threads: Decoder threads, 0 for one per core.
+        paper: Grey that shows through transparent pixels [code value].
 
     Raises:
         MediaError: If it cannot be read.
@@ -49,8 +51,8 @@ def open_decoder(
     """
     pattern = input_pattern(path)
     if pattern is not None:
-        return _SequenceDecoder(pattern, frame_range, max_pixels)
-    return _FileDecoder(Path(path), frame_range, max_pixels, threads)
+        return _SequenceDecoder(pattern, frame_range, max_pixels, paper)
+    return _FileDecoder(Path(path), frame_range, max_pixels, threads, paper)
 
 
 class Decoder:
@@ -59,13 +61,16 @@ class Decoder:
     info: MediaInfo
     """What the source is."""
 
-    def __init__(self, info: MediaInfo, frame_range: FrameRange, source_name: str) -> None:
+    def __init__(
+        self, info: MediaInfo, frame_range: FrameRange, source_name: str, paper: int
+    ) -> None:
         """Prepare the parts that all sources share; use `open_decoder`.
 
         Args:
             info: What the source is.
             frame_range: The frames wanted.
             source_name: The source, for messages.
+            paper: Grey that shows through transparent pixels [code value].
         """
         self.info = info
         self.warnings: list[str] = []
@@ -74,7 +79,8 @@ class Decoder:
         """Choices that were made, one sentence each."""
         self._range = frame_range
         self._name = source_name
-        self._reader = RgbReader(info.coded_width, info.coded_height)
+        self._paper = paper
+        self._reader = RgbReader(info.coded_width, info.coded_height, paper)
         self._delivered = 0
         self._iterator: Iterator[Frame] | None = None
 
@@ -125,7 +131,8 @@ class Decoder:
                 "convert the file to H.264 first",
             ) from error
         if self._reader.saw_transparency:
-            self._note_once("transparent parts are shown over white")
+            paper = {WHITE: "white", 0: "black"}.get(self._paper, f"grey {self._paper}")
+            self._note_once(f"transparent parts are shown over {paper}")
         return upright(pixels, self.info.rotation)
 
     def _note_once(self, note: str) -> None:
@@ -142,14 +149,16 @@ class Decoder:
 class _FileDecoder(Decoder):
     """Frames of one video or still file."""
 
-    def __init__(self, path: Path, wanted: FrameRange, max_pixels: int, threads: int) -> None:
+    def __init__(
+        self, path: Path, wanted: FrameRange, max_pixels: int, threads: int, paper: int
+    ) -> None:
         self._source = VideoSource(path, max_pixels, threads)
         try:
             info = describe(self._source)
         except BaseException:
             self._source.close()
             raise
-        super().__init__(info, wanted, str(path))
+        super().__init__(info, wanted, str(path), paper)
         self._end = Fraction(0)
 
     def close(self) -> None:
@@ -206,13 +215,15 @@ class _FileDecoder(Decoder):
 class _SequenceDecoder(Decoder):
     """Frames of numbered stills; their index is the number in the name."""
 
-    def __init__(self, pattern: NumberedPattern, wanted: FrameRange, max_pixels: int) -> None:
+    def __init__(
+        self, pattern: NumberedPattern, wanted: FrameRange, max_pixels: int, paper: int
+    ) -> None:
         self._pattern = pattern
         self._numbers = existing_numbers(pattern)
         self._max_pixels = max_pixels
         refuse_gaps(pattern, self._numbers, wanted)
         info = describe_sequence(pattern, self._numbers, max_pixels)
-        super().__init__(info, wanted, pattern.text)
+        super().__init__(info, wanted, pattern.text, paper)
 
     def _frames(self) -> Iterator[Frame]:
         first, base = self._numbers[0], self.info.time_base

@@ -6,7 +6,7 @@ import av
 import numpy as np
 from av.video.codeccontext import VideoCodecContext
 
-from stages.media.color import YuvWriter, over_white
+from stages.media.color import YuvWriter, over_paper
 from stages.media.commit import output_error, write_file
 from stages.media.container import DAMAGE
 from stages.media.output_plan import OutputPlan
@@ -90,7 +90,7 @@ def encode_still(pixels: np.ndarray, codec: str, crf: int | None) -> bytes:
         av.FFmpegError: If the encoder refuses.
     """
     if codec == "mjpeg" and pixels.shape[2] == 4:
-        pixels = over_white(pixels)
+        pixels = over_paper(pixels)
     context = av.CodecContext.create(codec, "w")
     if not isinstance(context, VideoCodecContext):
         raise ValueError(f"{codec} is no picture encoder")

@@ -12,7 +12,7 @@ from av.video.frame import VideoFrame
 from av.video.stream import VideoStream
 
 from stages.media.audio import AudioTrack, open_audio
-from stages.media.color import YuvWriter, over_white
+from stages.media.color import YuvWriter, over_paper
 from stages.media.commit import PendingFile, output_error
 from stages.media.container import DAMAGE
 from stages.media.encoder_setup import EncodeOptions, set_up, settings_of
@@ -182,7 +182,7 @@ class VideoWriter:
     def _fit(self, pixels: np.ndarray) -> np.ndarray:
         """Repeat border pixels where the format needs even sizes; drop alpha it cannot hold."""
         if pixels.shape[2] == 4 and self._colors.drops_alpha:
-            pixels = over_white(pixels)
+            pixels = over_paper(pixels)
         down = self._plan.padded_height - pixels.shape[0]
         right = self._plan.padded_width - pixels.shape[1]
         if down or right:
