@@ -46,6 +46,10 @@ class Appraiser:
         """The picture has changed: what was measured is void."""
         self._measured = None
 
+    def limit_area(self, largest_area: float) -> None:
+        """Bar changes that would make a triangle larger than this [px^2]."""
+        self._survey.limit_area(largest_area)
+
     def flip_gains(self, half_edges: np.ndarray) -> np.ndarray:
         """Energy that flipping each edge of the measured mesh saves [code value^2 px], [N]."""
         return self._survey.flip_gains(half_edges)

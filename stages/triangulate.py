@@ -5,41 +5,32 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from stages.appraise import Appraiser
+from stages.approximate import Approximator
 from stages.frame import WHITE, Frame
 from stages.layouts import Layout
 from stages.mesh import Mesh
 from stages.optimize import OptimizeOptions, load_mesh, optimize
+from stages.quality import FALL, Trial, smallest_that_reaches
 from stages.refine import RefineOptions
 from stages.snapshot import Snapshot
 from stages.spaces import SPACES
 from stages.topology import TOPOLOGIES, Goal
 from stages.topology.goal import SLIVER_HEIGHT
-from stages.topology.growth import Growth
-from warp_kernels.color_model import COLOR_MODELS, ColorModel
+from warp_kernels.color_model import CHANNELS, COLOR_MODELS, ColorModel
 from warp_kernels.device import Device
 from warp_kernels.errors import OptionError
 from warp_kernels.solve import SUMS
 from warp_kernels.workspace import Workspace
 
-FEW = 64
-"""Triangles of the layout where a threshold decides how many there will be."""
-GROWING_SHARE = 0.6
-"""Part of the refinement during which a threshold's triangles are split."""
-REFINING_SHARE = 0.85
-"""Part of a first frame's iterations during which the topology changes (the paper: 400 of 600)."""
-ROUND = 8
-"""Iterations between two looks at the topology of a first frame."""
-CATCHING_UP = 8
-"""More looks at the topology, if there are still too many triangles."""
-LAST_TRUST = 0.1
-"""Trust region of the last iteration beside the first one's: it shrinks so that vertices settle."""
-LAST_DISPLACEMENT = 0.25
-"""Distance of the variants in the last iterations [px]: a whole pixel blurs where an edge lies."""
 SPRING = 1500.0
 """Strength of the temporal term [code value^2]: a vertex leaves the flow's path where the picture
 pulls harder than noise does."""
 DEAD_BAND = 0.1
 """Steps of later frames below this are not taken [px]: noise must not move what stands still."""
+CALM_QUALITY = 0.02
+"""A later frame keeps its number of triangles while its rmse is this close to the wanted one."""
+MOST_DRIFT = 0.02
+"""Most that the number of triangles changes from one frame to the next, as a part of it."""
 
 
 @dataclass(frozen=True)
@@ -133,8 +124,15 @@ class Triangulator:
         self._scale = self._space.scale * self._white
         self.options = _against(options, self._scale, self._white)
         self._workspace = Workspace(device, size, options.model, options.sums, weighted)
-        self._topology = TOPOLOGIES[options.topology]()
+        self._least = options.refine.least_count(*size)
         self._appraiser = Appraiser(self._workspace, SLIVER_HEIGHT)
+        self._approximator = Approximator(
+            workspace=self._workspace,
+            topology=TOPOLOGIES[options.topology](),
+            appraiser=self._appraiser,
+            options=self.options.optimize,
+            iterations=options.iterations,
+        )
         self._fitting = self._workspace
         fitted = options.model
         if drawn is not None and drawn.degree > fitted.degree:
@@ -151,9 +149,18 @@ class Triangulator:
             rng: Randomness of the layout.
         """
         self._load(frame)
-        count = self._growth.count(0.0, self.options.refine.triangles)
-        mesh = layout.build(frame.pixels, max(2, count), rng)
-        return self._snapshot(frame, self._settle(self._refine(mesh)))
+        refine = self.options.refine
+
+        def attempt(count: int) -> Trial:
+            """Approximate the frame with a number of triangles."""
+            return self._trial(frame, layout, rng, self._goal(count))
+
+        if refine.quality is None:
+            return self._snapshot(frame, attempt(refine.triangles).mesh)
+        pixels = frame.pixels.shape[0] * frame.pixels.shape[1]
+        mesh = smallest_that_reaches(refine.quality, attempt, least=self._least, pixels=pixels)
+        load_mesh(self._workspace, mesh)
+        return self._snapshot(frame, mesh)
 
     def _load(self, frame: Frame) -> None:
         self._workspace.load_image(self._space.convert(frame.pixels), frame.weights)
@@ -169,10 +176,21 @@ class Triangulator:
         options = self.options
         self._load(frame)
         mesh = self._follow(seed, seed, options.frame_iterations // 2)
-        goal = Goal(options.refine.triangles, options.refine.error, calm=True)
-        mesh = self._topology.adapt(mesh, self._appraiser, goal)
+        goal = self._goal(self._followed_count(frame, mesh), calm=True)
+        mesh = self._approximator.topology.adapt(mesh, self._appraiser, goal)
         mesh = self._follow(mesh, seed, options.frame_iterations - options.frame_iterations // 2)
         return self._snapshot(frame, mesh)
+
+    def _followed_count(self, frame: Frame, mesh: Mesh) -> int:
+        """How many triangles a later frame shall have; a quality lets their number drift."""
+        refine = self.options.refine
+        if refine.quality is None:
+            return refine.triangles
+        missed = self._rmse(frame, self._appraiser.energies(mesh)) / refine.quality
+        if abs(missed - 1) < CALM_QUALITY:
+            return mesh.triangle_count
+        drift = min(max(missed ** (1 / FALL), 1 - MOST_DRIFT), 1 + MOST_DRIFT)
+        return max(self._least, round(mesh.triangle_count * drift))
 
     def _follow(self, mesh: Mesh, seed: Mesh, iterations: int) -> Mesh:
         """Optimise, with every vertex on a spring to where the flow took it."""
@@ -187,51 +205,23 @@ class Triangulator:
             self._workspace, mesh, iterations, self.options.optimize, dead_band=DEAD_BAND
         )
 
-    @property
-    def _growth(self) -> Growth:
-        """How the number of triangles develops: a threshold decides by itself, from few on."""
+    def _trial(self, frame: Frame, layout: Layout, rng: np.random.Generator, goal: Goal) -> Trial:
+        """Approximate the picture in the workspace from scratch."""
+        count = self._approximator.growth(goal).count(0.0, goal.count)
+        mesh = layout.build(frame.pixels, max(2, count), rng)
+        mesh = self._approximator.approximate(mesh, goal)
+        return Trial(mesh, self._rmse(frame, self._appraiser.energies(mesh)))
+
+    def _rmse(self, frame: Frame, energies: np.ndarray) -> float:
+        """Root mean square error per channel of the picture in the workspace [code values]."""
+        pixels = frame.pixels.shape[0] * frame.pixels.shape[1]
+        weight = pixels if frame.weights is None else int(frame.weights.sum(dtype=np.int64))
+        return float(np.sqrt(2.0 * energies.sum() / (CHANNELS * weight)))
+
+    def _goal(self, count: int, *, calm: bool = False) -> Goal:
+        """What the mesh must be like, with a number of triangles."""
         refine = self.options.refine
-        if refine.error is None:
-            return self._topology.growth
-        few = min(1.0, FEW / refine.triangles)
-        return Growth(start=few, peak=1.0, grown=GROWING_SHARE, settled=GROWING_SHARE)
-
-    def _refine(self, mesh: Mesh) -> Mesh:
-        """Alternate optimisation and changes of topology until the wanted number is reached."""
-        options, growth = self.options, self._growth
-        rounds = max(1, int(options.iterations * REFINING_SHARE) // ROUND)
-        for number in range(1, rounds + 1):
-            load_mesh(self._workspace, mesh)
-            mesh = optimize(self._workspace, mesh, ROUND, options.optimize)
-            count = growth.count(number / rounds, options.refine.triangles)
-            goal = Goal(count, options.refine.error)
-            mesh = self._topology.adapt(mesh, self._appraiser, goal)
-        for _ in range(CATCHING_UP):  # where the rounds were too few for the way down
-            if mesh.triangle_count > goal.count + 1:
-                mesh = self._topology.adapt(mesh, self._appraiser, goal)
-        return mesh
-
-    def _settle(self, mesh: Mesh) -> Mesh:
-        """The last iterations: no change of topology, smaller and smaller steps.
-
-        Source: Lawonn & Guenther (2018), Sec. 6.6 (no Delaunay at the end), Sec. 3.2 (trust region
-            that decreases over time).
-        """
-        options = self.options
-        left = options.iterations - int(options.iterations * REFINING_SHARE) // ROUND * ROUND
-        load_mesh(self._workspace, mesh)
-        for begin in range(0, left, ROUND):
-            trust = options.optimize.trust_region * LAST_TRUST ** (begin / left)
-            steps = min(ROUND, left - begin)
-            mesh = optimize(
-                self._workspace,
-                mesh,
-                steps,
-                options.optimize,
-                trust_region=trust,
-                displacement=LAST_DISPLACEMENT,
-            )
-        return mesh
+        return Goal(count, refine.error, refine.largest_area, calm=calm)
 
     def _snapshot(self, frame: Frame, mesh: Mesh) -> Snapshot:
         """Fit the colours to the mesh that lies in the workspace, just optimised."""

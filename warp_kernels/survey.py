@@ -25,9 +25,16 @@ class Survey:
 
     def __init__(self, workspace: Workspace, least_height: float) -> None:
         self._workspace = workspace
+        self._limits = workspace.device.empty(2, wp.float64)
         self._least_height = least_height
+        self.limit_area(np.inf)
         self._capacity = 0
         self._phases: dict[tuple[str, int, int], Phase] = {}
+
+    def limit_area(self, largest_area: float) -> None:
+        """Bar changes that would make a triangle larger than this [px^2]."""
+        limits = np.array([self._least_height, largest_area])
+        self._workspace.device.write(self._limits, limits)
 
     def load_topology(self, twins: np.ndarray, corners: np.ndarray) -> None:
         """Take in what the workspace does not know of its mesh.
@@ -88,13 +95,13 @@ class Survey:
             energies=workspace.fit_energies,
             table=workspace.table,
             powers=workspace.powers,
+            limits=self._limits,
             changes_out=self._changes,
             points_out=self._points,
         )
-        limits = {"height": workspace.size[1], "least_height": self._least_height}
-        device, model = workspace.device, workspace.model
+        device, model, height = workspace.device, workspace.model, workspace.size[1]
         if change == "flip":
-            return record_flip_gains(device, model, arrays, **limits)
+            return record_flip_gains(device, model, arrays, height=height)
         if change == "split":
-            return record_split_gains(device, model, arrays, **limits)
-        return record_collapse_costs(device, model, arrays, **limits)
+            return record_split_gains(device, model, arrays, height=height)
+        return record_collapse_costs(device, model, arrays, height=height)

@@ -44,6 +44,8 @@ class SurveyArrays:
     """Prefix sums of the image, see `image_tables`."""
     powers: wp.array
     """Sums of x^a left of each column, [W + 1] vectors."""
+    limits: wp.array
+    """Smallest height [px] and largest area [px^2] of the triangles that a change makes, [2]."""
     changes_out: wp.array
     """Change of energy [code value^2 px], [N] float64; its sign is the launcher's."""
     points_out: wp.array
@@ -51,10 +53,11 @@ class SurveyArrays:
 
 
 @wp.func
-def signed_height(a: wp.vec2d, b: wp.vec2d, c: wp.vec2d) -> wp.float64:
-    """Smallest height [px], negative where the triangle is turned inside out."""
+def allowed(a: wp.vec2d, b: wp.vec2d, c: wp.vec2d, limits: wp.array(dtype=wp.float64)) -> bool:
+    """Whether a new triangle is neither too thin nor too large."""
     doubled = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
-    return wp.sign(doubled) * smallest_height(a, b, c)
+    high = wp.sign(doubled) * smallest_height(a, b, c) >= limits[0]
+    return high and doubled <= wp.float64(2.0) * limits[1]
 
 
 @wp.func
@@ -80,7 +83,7 @@ def _flip_kernel(model: ColorModel) -> Any:
         table: wp.array(dtype=wp.vec4i),
         powers: wp.array(dtype=powers_type),
         height: int,
-        least_height: wp.float64,
+        limits: wp.array(dtype=wp.float64),
         # Out:
         gains_out: wp.array(dtype=wp.float64),
     ):
@@ -96,8 +99,7 @@ def _flip_kernel(model: ColorModel) -> Any:
             b = vertices[corners[twin]]
             c = vertices[corners[corner_after(corner_after(side))]]
             d = vertices[corners[corner_after(corner_after(twin))]]
-            lower = wp.min(signed_height(a, d, c), signed_height(b, c, d))
-            if lower >= least_height:
+            if allowed(a, d, c, limits) and allowed(b, c, d, limits):
                 gains_out[number] = (
                     energies[side / 3]
                     + energies[twin / 3]
@@ -126,7 +128,7 @@ def _collapse_kernel(model: ColorModel) -> Any:
         table: wp.array(dtype=wp.vec4i),
         powers: wp.array(dtype=powers_type),
         height: int,
-        least_height: wp.float64,
+        limits: wp.array(dtype=wp.float64),
         # Out:
         costs_out: wp.array(dtype=wp.float64),
     ):
@@ -147,7 +149,7 @@ def _collapse_kernel(model: ColorModel) -> Any:
                 a = vertices[goal]
                 b = vertices[second]
                 c = vertices[third]
-                if signed_height(a, b, c) < least_height:
+                if not allowed(a, b, c, limits):
                     cost += wp.float64(wp.static(IMPOSSIBLE))
                 elif cost < wp.float64(wp.static(0.5 * IMPOSSIBLE)):
                     cost += energy(a, b, c, table, powers, height)
@@ -173,7 +175,7 @@ def _split_kernel(model: ColorModel) -> Any:
         table: wp.array(dtype=wp.vec4i),
         powers: wp.array(dtype=powers_type),
         height: int,
-        least_height: wp.float64,
+        limits: wp.array(dtype=wp.float64),
         # Out:
         gains_out: wp.array(dtype=wp.float64),
         points_out: wp.array(dtype=wp.vec2d),
@@ -201,12 +203,11 @@ def _split_kernel(model: ColorModel) -> Any:
                 m = m + lift * (c - m)
             if wp.static(SPLIT_PLACES[place][1] < 0.0):
                 m = m - lift * (d - m)
-            lower = wp.min(signed_height(a, m, c), signed_height(m, b, c))
+            possible = allowed(a, m, c, limits) and allowed(m, b, c, limits)
             if twin >= 0:
-                lower = wp.min(lower, wp.min(signed_height(m, a, d), signed_height(b, m, d)))
-            possible = lower >= least_height
-            if wp.static(SPLIT_PLACES[place][1] != 0.0):
-                possible = possible and twin >= 0
+                possible = possible and allowed(m, a, d, limits) and allowed(b, m, d, limits)
+            elif wp.static(SPLIT_PLACES[place][1] != 0.0):
+                possible = False
             if possible:
                 gain = before - energy(a, m, c, table, powers, height)
                 gain -= energy(m, b, c, table, powers, height)
@@ -223,7 +224,7 @@ def _split_kernel(model: ColorModel) -> Any:
 
 
 def record_flip_gains(
-    device: Device, model: ColorModel, arrays: SurveyArrays, *, height: int, least_height: float
+    device: Device, model: ColorModel, arrays: SurveyArrays, *, height: int
 ) -> Phase:
     """Prepare the launch that measures every flip.
 
@@ -234,18 +235,17 @@ def record_flip_gains(
         model: The polynomial colour.
         arrays: What is read and written; half-edges stand for their edges.
         height: Rows of the image [px].
-        least_height: Smallest height that the new triangles may have [px].
 
     Deviation: the paper flips for the Delaunay property alone (Sec. 3.4).
     """
     mesh = [arrays.half_edges, arrays.twins, arrays.corners, arrays.vertices, arrays.energies]
     picture = [arrays.table, arrays.powers, height]
-    inputs = [*mesh, *picture, wp.float64(least_height)]
+    inputs = [*mesh, *picture, arrays.limits]
     return device.record(_flip_kernel(model), inputs, [arrays.changes_out])
 
 
 def record_collapse_costs(
-    device: Device, model: ColorModel, arrays: SurveyArrays, *, height: int, least_height: float
+    device: Device, model: ColorModel, arrays: SurveyArrays, *, height: int
 ) -> Phase:
     """Prepare the launch that measures every half-edge collapse.
 
@@ -256,14 +256,13 @@ def record_collapse_costs(
         model: The polynomial colour.
         arrays: What is read and written; the origins of half-edges move into their destinations.
         height: Rows of the image [px].
-        least_height: Smallest height that the changed triangles may have [px].
 
     Deviation: the paper collapses triangles of small area on their shortest edge (Sec. 3.4).
     """
     fans = [arrays.fan_offsets, arrays.fan_corners]
     mesh = [arrays.half_edges, arrays.corners, *fans, arrays.vertices, arrays.energies]
     picture = [arrays.table, arrays.powers, height]
-    inputs = [*mesh, *picture, wp.float64(least_height)]
+    inputs = [*mesh, *picture, arrays.limits]
     return device.record(_collapse_kernel(model), inputs, [arrays.changes_out])
 
 
@@ -273,7 +272,6 @@ def record_split_gains(
     arrays: SurveyArrays,
     *,
     height: int,
-    least_height: float,
 ) -> Phase:
     """Prepare the launch that measures the split of every edge at the best of `SPLIT_PLACES`.
 
@@ -284,12 +282,11 @@ def record_split_gains(
         model: The polynomial colour.
         arrays: What is read and written; half-edges stand for their edges.
         height: Rows of the image [px].
-        least_height: Smallest height that the new triangles may have [px].
 
     Deviation: the paper splits the triangles of the largest error at their centroids (Sec. 3.4).
     """
     mesh = [arrays.half_edges, arrays.twins, arrays.corners, arrays.vertices, arrays.energies]
     picture = [arrays.table, arrays.powers, height]
-    inputs = [*mesh, *picture, wp.float64(least_height)]
+    inputs = [*mesh, *picture, arrays.limits]
     outputs = [arrays.changes_out, arrays.points_out]
     return device.record(_split_kernel(model), inputs, outputs)

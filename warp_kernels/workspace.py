@@ -179,6 +179,10 @@ class Workspace:
         self.device.run([self._moments[self._front], self._energy])
         return self.device.read(self._energies, self._counts[1])
 
+    def last_energy(self) -> float:
+        """Energy of the mesh before the last step of `iterate` [code value^2 px]."""
+        return float(self.device.read(self._energies, self._counts[1])[:, 0].sum())
+
     def moments(self) -> tuple[np.ndarray, np.ndarray]:
         """Colour and area sums as they stand: [E, 9, .] with edges, [T, 13, .] with fragments."""
         self._displace(DISPLACEMENT)

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from stages.appraise import Appraiser
 from stages.collapse import collapse_slivers
+from stages.divide import divide_large
 from stages.edits import legalise
 from stages.mesh import Mesh
 from stages.refine import split_worst
@@ -37,4 +38,5 @@ class Delaunay:
         mesh = collapse_slivers(mesh, SLIVER_HEIGHT)
         energies = appraiser.energies(mesh)
         mesh = split_worst(mesh, energies, count=goal.count, threshold=goal.threshold)
-        return legalise(mesh, mesh.triangle_ids >= fresh if goal.calm else None)
+        mesh = legalise(mesh, mesh.triangle_ids >= fresh if goal.calm else None)
+        return divide_large(mesh, goal.largest_area)

@@ -6,6 +6,7 @@ import numpy as np
 
 from stages.appraise import Appraiser
 from stages.collapse import collapse_slivers
+from stages.divide import divide_large
 from stages.edits import (
     collapse_edges,
     collapsible,
@@ -58,6 +59,8 @@ class Energy:
 
         Deviation: the paper keeps the Delaunay property and splits at centroids (Sec. 3.4).
         """
+        appraiser.limit_area(goal.largest_area)
+        mesh = divide_large(mesh, goal.largest_area)
         if goal.calm:
             mesh = collapse_slivers(mesh, CALM_SLIVER_HEIGHT)
             mesh = _flip(mesh, appraiser, self.calm_flip)

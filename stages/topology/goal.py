@@ -1,6 +1,7 @@
 """What a change of topology is to achieve."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from math import inf
 
 
 @dataclass(frozen=True)
@@ -11,8 +12,14 @@ class Goal:
     """Number of triangles to reach, give or take one."""
     threshold: float | None = None
     """Only triangles with sqrt(E(T) / |I|) above this are split [code values]; None for all."""
+    largest_area: float = inf
+    """No triangle may become larger [px^2]."""
     calm: bool = False
     """Whether a picture is being followed: only what clearly pays may change."""
+
+    def tightened(self, count: int, spare: float) -> "Goal":
+        """The same goal with another count, and a part of the area to spare."""
+        return replace(self, count=count, largest_area=spare * self.largest_area)
 
 
 SLIVER_HEIGHT = 0.5

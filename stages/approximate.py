@@ -1,0 +1,122 @@
+"""A still picture, from a layout to an optimised mesh of a wanted number of triangles."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from stages.appraise import Appraiser
+from stages.divide import divide_large
+from stages.mesh import Mesh
+from stages.optimize import OptimizeOptions, load_mesh, optimize
+from stages.topology import Goal, Topology
+from stages.topology.growth import Growth
+from warp_kernels.workspace import Workspace
+
+FEW = 64
+"""Triangles of the layout where a threshold decides how many there will be."""
+GROWING_SHARE = 0.6
+"""Part of the refinement during which a threshold's triangles are split."""
+REFINING_SHARE = 0.85
+"""Part of the iterations during which the topology changes (the paper: 400 of 600)."""
+ROUND = 8
+"""Iterations between two looks at the topology, and at what the last ones have brought."""
+CONVERGED = 2e-4
+"""A round that saves less than this part of the energy is the last one of its kind."""
+CATCHING_UP = 8
+"""More looks at the topology, if there are still too many triangles."""
+SPARE = 0.8
+"""Part of the largest area that triangles keep to before their vertices settle."""
+LAST_TRUST = 0.1
+"""Trust region of the last iteration beside the first one's: it shrinks so that vertices settle."""
+LAST_DISPLACEMENT = 0.25
+"""Distance of the variants in the last iterations [px]: a whole pixel blurs where an edge lies."""
+
+
+@dataclass(frozen=True, eq=False)
+class Approximator:
+    """Optimises meshes over the picture in a workspace."""
+
+    workspace: Workspace
+    """Holds the picture, and the mesh that was optimised last."""
+    topology: Topology
+    """Changes the mesh."""
+    appraiser: Appraiser
+    """Measures meshes in `workspace`."""
+    options: OptimizeOptions
+    """How vertices move."""
+    iterations: int
+    """Most iterations; fewer where the energy has converged."""
+
+    def growth(self, goal: Goal) -> Growth:
+        """How the number of triangles develops: a threshold decides by itself, from few on."""
+        if goal.threshold is None:
+            return self.topology.growth
+        few = min(1.0, FEW / goal.count)
+        return Growth(start=few, peak=1.0, grown=GROWING_SHARE, settled=GROWING_SHARE)
+
+    def approximate(self, mesh: Mesh, goal: Goal) -> Mesh:
+        """Refine and settle a mesh, which then lies in the workspace.
+
+        Args:
+            mesh: A layout.
+            goal: What the result must be like.
+        """
+        mesh = self._settle(self._refine(mesh, goal))
+        return self._within_limits(mesh, goal)
+
+    def _refine(self, mesh: Mesh, goal: Goal) -> Mesh:
+        """Alternate optimisation and changes of topology until the wanted number is reached."""
+        growth = self.growth(goal)
+        rounds = max(1, int(self.iterations * REFINING_SHARE) // ROUND)
+        before = np.inf
+        for number in range(1, rounds + 1):
+            load_mesh(self.workspace, mesh)
+            mesh = optimize(self.workspace, mesh, ROUND, self.options)
+            progress = number / rounds
+            energy = self.appraiser.energies(mesh).sum()
+            if progress > growth.settled and energy > (1 - CONVERGED) * before:
+                break
+            before = energy
+            target = goal.tightened(growth.count(progress, goal.count), SPARE)
+            mesh = self.topology.adapt(mesh, self.appraiser, target)
+        for _ in range(CATCHING_UP):  # where the rounds were too few for the way down
+            if mesh.triangle_count > goal.count + 1:
+                target = goal.tightened(goal.count, SPARE)
+                mesh = self.topology.adapt(mesh, self.appraiser, target)
+        return mesh
+
+    def _settle(self, mesh: Mesh) -> Mesh:
+        """The last iterations: no change of topology, smaller and smaller steps.
+
+        Source: Lawonn & Guenther, Stylized Image Triangulation (2018), Sec. 6.6 (no Delaunay at
+            the end), Sec. 3.2 (trust region that decreases over time).
+        """
+        left = self.iterations - int(self.iterations * REFINING_SHARE) // ROUND * ROUND
+        load_mesh(self.workspace, mesh)
+        before = np.inf
+        for begin in range(0, left, ROUND):
+            mesh = optimize(
+                self.workspace,
+                mesh,
+                min(ROUND, left - begin),
+                self.options,
+                trust_region=self.options.trust_region * LAST_TRUST ** (begin / left),
+                displacement=LAST_DISPLACEMENT,
+            )
+            energy = self.workspace.last_energy()
+            if energy > (1 - CONVERGED) * before:
+                break
+            before = energy
+        return mesh
+
+    def _within_limits(self, mesh: Mesh, goal: Goal) -> Mesh:
+        """Divide what has grown beyond the largest area while vertices settled."""
+        for _ in range(CATCHING_UP):
+            divided = divide_large(mesh, goal.largest_area)
+            if divided is mesh:
+                break
+            mesh = divided
+            if mesh.triangle_count > goal.count + 1:
+                mesh = self.topology.adapt(mesh, self.appraiser, goal.tightened(goal.count, SPARE))
+            load_mesh(self.workspace, mesh)
+        return mesh
