@@ -221,7 +221,7 @@ class Triangulator:
     def _goal(self, count: int, *, calm: bool = False) -> Goal:
         """What the mesh must be like, with a number of triangles."""
         refine = self.options.refine
-        return Goal(count, refine.error, refine.largest_area, calm=calm)
+        return Goal(count, refine.error, calm, refine.largest_area)
 
     def _snapshot(self, frame: Frame, mesh: Mesh) -> Snapshot:
         """Fit the colours to the mesh that lies in the workspace, just optimised."""

@@ -12,10 +12,10 @@ class Goal:
     """Number of triangles to reach, give or take one."""
     threshold: float | None = None
     """Only triangles with sqrt(E(T) / |I|) above this are split [code values]; None for all."""
-    largest_area: float = inf
-    """No triangle may become larger [px^2]."""
     calm: bool = False
     """Whether a picture is being followed: only what clearly pays may change."""
+    largest_area: float = inf
+    """No triangle may become larger [px^2]."""
 
     def tightened(self, count: int, spare: float) -> "Goal":
         """The same goal with another count, and a part of the area to spare."""
