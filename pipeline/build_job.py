@@ -28,6 +28,8 @@ def build_job(given: Mapping[str, Any]) -> Job:
     values = dict(given)
     values["source"], values["output"] = Path(given["source"]), Path(given["output"])
     values["frame_range"] = frame_range(given)
+    if given.get("track") is not None:
+        values["track"] = Path(given["track"])
     for name, registry in (("layout", LAYOUTS), ("flow", FLOWS)):
         if name in given:
             values[name] = parse_member(f"--{name}", given[name], registry)

@@ -22,6 +22,7 @@ HEADINGS = {
     "look": "look",
     "output": "output file",
     "run": "run",
+    "processes": "processes",
 }
 """Groups of the help, in order, and their titles."""
 

@@ -147,6 +147,17 @@ class Triangulator:
         mesh = self._follow(mesh, seed, options.frame_iterations - options.frame_iterations // 2)
         return self._snapshot(frame, mesh)
 
+    def fit(self, frame: Frame, mesh: Mesh) -> Snapshot:
+        """Fit the colours alone, to a mesh that stays as it is.
+
+        Args:
+            frame: The frame.
+            mesh: What it became before.
+        """
+        self._load(frame)
+        load_mesh(self._workspace, mesh)
+        return self._snapshot(frame, mesh)
+
     def _follow(self, mesh: Mesh, seed: Mesh, iterations: int) -> Mesh:
         """Optimise, with every vertex on a spring to where the flow took it."""
         springs = np.zeros((mesh.vertex_count, 3))
