@@ -30,6 +30,8 @@ def build_job(given: Mapping[str, Any]) -> Job:
     values["frame_range"] = frame_range(given)
     if given.get("track") is not None:
         values["track"] = Path(given["track"])
+    if given.get("resume"):
+        values["overwrite"] = True  # what is drawn from a track replaces what was drawn before
     for name, registry in (("layout", LAYOUTS), ("flow", FLOWS)):
         if name in given:
             values[name] = parse_member(f"--{name}", given[name], registry)

@@ -48,7 +48,7 @@ def past_of(job: Job) -> Past | None:
         if job.resume:
             raise OptionError("--resume: nothing is left to go on with; name a --track FILE.mtrk")
         return None
-    _check_place(job.track, job)
+    check_track_place(job.track, job)
     if not (job.resume and job.track.exists()):
         return None
     with TrackReader(job.track) as reader:
@@ -100,7 +100,13 @@ def check_track_name(path: Path) -> None:
         raise OutputError(path, "is a folder", "give the name of a file")
 
 
-def _check_place(path: Path, job: Job) -> None:
+def check_track_place(path: Path, job: Job) -> None:
+    """Find out before any work is done whether a job's track can be written.
+
+    Raises:
+        OptionError: If its name does not end as tracks do.
+        OutputError: If it exists and is neither to be resumed nor replaced, or cannot be written.
+    """
     check_track_name(path)
     if path.exists() and not (job.resume or job.encode.overwrite):
         raise OutputError(path, "exists already", "choose another name, --resume or --overwrite")
