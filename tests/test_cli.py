@@ -84,6 +84,8 @@ USAGE_ERRORS = [
     ("--threads -1", "-1"),
     ("--threads 123456", "123456"),
     ("--seed -1", "-1"),
+    ("--jobs 0", "--jobs 0"),
+    ("--jobs some", "some"),
     ("--progress loud", "plain"),
     ("--preset nowhere", "preview"),
     ("--triangle 5", "--triangles"),
@@ -165,6 +167,13 @@ def test_impossible_option_is_one_line(
         "animate -o out.mp4",
         "info",
         "measure a",
+        "solve in.mp4",
+        "solve in.mp4 -o a.mtrk --style flat",
+        "render a.mtrk",
+        "render a.mtrk -o a.mp4 --triangles 5",
+        "plan",
+        "plan in.mp4 --parts some",
+        "join -o a.mtrk",
         "info a b",
     ],
 )
@@ -253,7 +262,7 @@ def test_help_lists_options_and_members(capsys) -> None:
     assert "(default: 1500)" in text
 
 
-@pytest.mark.parametrize("command", [[], ["info"], ["measure"]])
+@pytest.mark.parametrize("command", [[], *([name] for name in cli.COMMANDS)])
 def test_help_of_other_commands(command: list[str], capsys) -> None:
     """Help goes to standard output, exit code 0."""
     assert main([*command, "--help"]) == 0

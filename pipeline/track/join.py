@@ -10,7 +10,7 @@ from pathlib import Path
 from pipeline.track.agreement import differing_flags
 from pipeline.track.header import Header, write_header
 from pipeline.track.reader import TrackReader
-from pipeline.track.schema import TABLES, create, writing
+from pipeline.track.schema import TABLES, create, put_in_place, writing
 from stages.media import FrameRange
 from stages.media.commit import PendingFile
 from warp_kernels.errors import OptionError, TrackError
@@ -52,7 +52,7 @@ def join(parts: Sequence[Path], output: Path) -> Header:
     except BaseException:
         pending.discard()
         raise
-    pending.commit()
+    put_in_place(pending)
     return header
 
 
@@ -101,7 +101,10 @@ def _check_follows(before: TrackReader, after: TrackReader, step: int) -> None:
 def _whole_range(readers: Sequence[TrackReader]) -> FrameRange:
     """From the first part's beginning to the last one's end."""
     first, last = (readers[place].header.frame_range for place in (0, -1))
-    return replace(first, last=last.last, end_time=last.end_time)
+    joined = replace(first, last=last.last, end_time=last.end_time)
+    count = readers[0].header.info.frame_count
+    is_whole = joined.last is not None and joined == FrameRange(last=joined.last)
+    return FrameRange() if is_whole and readers[-1].rows[-1].frame + 1 == count else joined
 
 
 def _copy(connection: sqlite3.Connection, path: Path) -> None:

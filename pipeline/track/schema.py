@@ -17,6 +17,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from stages.media.commit import PendingFile, output_error
 from warp_kernels.errors import OutputError, TrackError
 
 MAGIC = b"SQLite format 3\0"
@@ -81,6 +82,25 @@ def create(path: Path) -> sqlite3.Connection:
     return connection
 
 
+def put_in_place(pending: PendingFile) -> None:
+    """Give a track its name, in place of what stands there.
+
+    Args:
+        pending: The track, closed.
+
+    Raises:
+        OutputError: If the disk or the folder refuses.
+    """
+    target = pending.target
+    try:
+        # What a killed run left beside an old track must not be taken for the new one's.
+        target.with_name(f"{target.name}-journal").unlink(missing_ok=True)
+    except OSError as error:
+        pending.discard()
+        raise output_error(target, error) from error
+    pending.commit()
+
+
 def open_existing(path: Path) -> sqlite3.Connection:
     """Open a track, and undo what a killed run left half-written in it.
 
@@ -97,6 +117,10 @@ def open_existing(path: Path) -> sqlite3.Connection:
             connection.execute("PRAGMA synchronous = NORMAL")
             connection.execute("SELECT COUNT(*) FROM sqlite_master").fetchone()
             _check_form(path, connection)
+        except sqlite3.Error:
+            connection.close()
+            _check_length(path)
+            raise
         except BaseException:
             connection.close()
             raise
@@ -149,18 +173,28 @@ def _connect(path: Path, mode: str) -> sqlite3.Connection:
 
 
 def _check_file(path: Path) -> None:
-    """Refuse what is no file of SQLite, or only the beginning of one."""
+    """Refuse what is no file of SQLite."""
     try:
         with path.open("rb") as file:
             head = file.read(100)
-        size = path.stat().st_size
     except OSError as error:
         reason = str(error.strerror or error).lower()
         raise TrackError(f"{path}: cannot be read ({reason}); give the name of a track") from error
     if len(head) < 100 or not head.startswith(MAGIC):
         raise TrackError(f"{path}: is no mesh track; give a file that trimotion solve wrote")
-    page = int.from_bytes(head[16:18], "big")
-    declared = (65536 if page == 1 else page) * int.from_bytes(head[28:32], "big")
+
+
+def _check_length(path: Path) -> None:
+    """Tell what is wrong with the beginning of a file.
+
+    Only after SQLite has found fault with it: a file that a killed run leaves may be short as
+    well, until SQLite mends it by its journal.
+    """
+    with path.open("rb") as file:
+        content = file.read(100)
+    size = path.stat().st_size
+    page = int.from_bytes(content[16:18], "big")
+    declared = (65536 if page == 1 else page) * int.from_bytes(content[28:32], "big")
     if size < declared:
         raise TrackError(
             f"{path}: is cut off ({size} of {declared} bytes); copy it again, or solve again"

@@ -1,6 +1,7 @@
 """Write a track while it is made; every frame is there to stay once it is written."""
 
 import sqlite3
+from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
@@ -9,8 +10,8 @@ import numpy as np
 
 from pipeline.track.blobs import pack
 from pipeline.track.header import Header, write_header
-from pipeline.track.schema import create, open_existing, writing
-from stages.media.commit import output_error
+from pipeline.track.schema import create, open_existing, put_in_place, writing
+from stages.media.commit import PendingFile
 from stages.mesh import Mesh
 from stages.snapshot import Snapshot
 
@@ -63,15 +64,15 @@ class TrackWriter:
     def _opened(self) -> sqlite3.Connection:
         """The file, made when the first frame comes: before that nothing is replaced."""
         if self._connection is None:
-            journal = self._path.with_name(f"{self._path.name}-journal")
+            pending = PendingFile(self._path)
             try:
-                for name in (self._path, journal):
-                    name.unlink(missing_ok=True)
-            except OSError as error:
-                raise output_error(self._path, error) from error
-            self._connection = create(self._path)
-            with writing(self._path):
-                write_header(self._connection, self._header)
+                with writing(self._path), closing(create(pending.path)) as connection:
+                    write_header(connection, self._header)
+            except BaseException:
+                pending.discard()
+                raise
+            put_in_place(pending)
+            self._connection = open_existing(self._path)
         return self._connection
 
     def write(self, snapshot: Snapshot, shot: int) -> None:
