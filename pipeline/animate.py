@@ -135,7 +135,7 @@ def _convert(job: Job, progress: Progress, *, draws: bool) -> Animated:
         triangulator = Triangulator(device, (info.width, info.height), job.triangulate, job.fitted)
         drawing = Drawing(job, info, device) if draws else None
         tally = _Tally(progress, _expected(job, info.frame_count))
-        notes: list[str] = []
+        notes = [] if past is None else past.notes
         found = _open_steps(decoder, job, past, notes)
         with open_track(job, info, past) as track:
             writer = Behind(_Writer(track, drawing), SOLVED_BEHIND)

@@ -45,6 +45,7 @@ def _facts(track: TrackReader) -> dict[str, object]:
         "kind": "track",
         "format": FORMAT,
         "program": header.program,
+        "libraries": dict(header.libraries),
         "finished": header.finished,
         "frame_range": str(header.frame_range),
         "shots": list(track.shots),

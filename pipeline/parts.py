@@ -3,6 +3,7 @@
 import multiprocessing
 import os
 import shutil
+import signal
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
@@ -203,6 +204,7 @@ class _Reporter(Progress):
 
 def _work(job: Job, tasks: Any, reports: Any, parent: int) -> None:
     """What a process does: one range after the other, until it is ended."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C goes to all; the first process ends all
     try:
         while True:
             wanted, path = tasks.get()

@@ -29,6 +29,12 @@ class Past:
     snapshot: Snapshot
     """What it became: all that the next frame depends on, beside the pictures."""
 
+    @property
+    def notes(self) -> list[str]:
+        """What may make the frames to come differ from those of an uninterrupted job."""
+        other = self.header.other_versions
+        return [f"the track was begun with other versions: {', '.join(other)}"] if other else []
+
 
 def past_of(job: Job) -> Past | None:
     """What an earlier run of a job left.

@@ -2,6 +2,9 @@
 
 from importlib import metadata
 
+LIBRARIES = ("warp-lang", "numpy", "scipy", "opencv-contrib-python-headless", "av")
+"""Libraries on which the bits of a result depend."""
+
 
 def program_version() -> str:
     """The installed version; finding it takes a while."""
@@ -9,3 +12,14 @@ def program_version() -> str:
         return metadata.version("trimotion")
     except metadata.PackageNotFoundError:
         return "(not installed)"
+
+
+def library_versions() -> dict[str, str]:
+    """Versions of the libraries that are installed under their usual names."""
+    versions = {}
+    for name in LIBRARIES:
+        try:
+            versions[name] = metadata.version(name)
+        except metadata.PackageNotFoundError:
+            continue
+    return versions

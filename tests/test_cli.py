@@ -224,6 +224,26 @@ def test_termination_cleans_up(monkeypatch, capsys) -> None:
     assert_one_line(capsys.readouterr(), "terminated")
 
 
+@pytest.mark.parametrize(
+    ("command", "hint"),
+    [
+        (["solve", "a.mp4", "-o", "a.mtrk"], "--resume"),
+        (["animate", "a.mp4", "-o", "b.mp4", "--track", "a.mtrk"], "--resume"),
+        (["animate", "a.mp4", "-o", "b.mp4"], "no unfinished file"),
+        (["render", "a.mtrk", "-o", "b.mp4"], "no unfinished file"),
+    ],
+)
+def test_interruption_tells_what_is_left(command, hint: str, monkeypatch, capsys) -> None:
+    """A track goes on; every other file is whole or not there."""
+
+    def interrupt(arguments) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setitem(cli.COMMANDS, command[0], interrupt)
+    assert main(command) == 130
+    assert_one_line(capsys.readouterr(), "interrupted", hint)
+
+
 def test_reader_that_leaves_is_no_error() -> None:
     """`trimotion ... | head -0` prints no traceback."""
     script = "import sys; from pipeline import cli\n"

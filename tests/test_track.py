@@ -237,6 +237,13 @@ def test_other_options_are_no_resumption(
     assert words in line
 
 
+def test_other_versions_are_told(clip: Path, copy: Path) -> None:
+    """A track goes on with another NumPy, but it does so openly."""
+    spoil(copy, "UPDATE header SET value = '{\"numpy\": \"0.1\"}' WHERE key = 'libraries'")
+    notes = solve_to(copy, clip, resume=True).notes
+    assert any(f"numpy {np.__version__} instead of 0.1" in note for note in notes)
+
+
 def test_other_source_is_no_resumption(clip: Path, copy: Path, tmp_path: Path, capsys) -> None:
     """A source that changed since, in its size or in its content."""
     content = clip.read_bytes()

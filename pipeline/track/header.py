@@ -12,7 +12,7 @@ from pipeline.job import Job
 from pipeline.plain_values import from_plain, to_plain
 from pipeline.shots import read_cuts
 from pipeline.track.identity import SourceIdentity, identity_of
-from pipeline.version import program_version
+from pipeline.version import library_versions, program_version
 from stages.media import FrameRange, MediaInfo
 from warp_kernels.color_model import COLOR_MODELS, ColorModel
 from warp_kernels.errors import TrackError
@@ -24,6 +24,8 @@ class Header:
 
     program: str
     """Version of the program that began it."""
+    libraries: Mapping[str, str]
+    """Versions of the libraries on which the bits depend."""
     options: Mapping[str, Any]
     """The whole job as plain values; a list of cuts is stored itself, not its name."""
     source: SourceIdentity
@@ -45,7 +47,25 @@ class Header:
             model: The colour model of its snapshots.
         """
         options = {**to_plain(job), "cuts": plain_cuts(job.cuts)}
-        return cls(program_version(), options, identity_of(job.source), info, model)
+        return cls(
+            program=program_version(),
+            libraries=library_versions(),
+            options=options,
+            source=identity_of(job.source),
+            info=info,
+            model=model,
+        )
+
+    @property
+    def other_versions(self) -> list[str]:
+        """What has another version here than where the track was begun."""
+        now = {"trimotion": program_version(), **library_versions()}
+        then = {"trimotion": self.program, **self.libraries}
+        return [
+            f"{name} {now.get(name)} instead of {version}"
+            for name, version in then.items()
+            if now.get(name) != version
+        ]
 
     @cached_property
     def frame_range(self) -> FrameRange:
@@ -81,6 +101,7 @@ def write_header(connection: sqlite3.Connection, header: Header) -> None:
     """Store a header in place of what stands there."""
     rows = {
         "program": header.program,
+        "libraries": dict(header.libraries),
         "options": header.options,
         "source": to_plain(header.source),
         "info": to_plain(header.info),
@@ -104,6 +125,7 @@ def read_header(path: Path, connection: sqlite3.Connection) -> Header:
         rows = {key: json.loads(value) for key, value in stored.items()}
         return Header(
             program=rows["program"],
+            libraries=rows["libraries"],
             options=rows["options"],
             source=from_plain(SourceIdentity, rows["source"]),
             info=from_plain(MediaInfo, rows["info"]),
