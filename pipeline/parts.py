@@ -100,7 +100,7 @@ def solve_in_parts(job: Job, progress: Progress) -> Animated:
     crew = _Crew(job, ranges, folder, progress)
     with crew.at_work():
         crew.wait()
-    join([_path(folder, part) for part in ranges], job.track)
+    join([_path(folder, part) for part in ranges], job.track, job.frame_range)
     with TrackReader(job.track) as reader:
         mean = float(np.mean([row.rmse for row in reader.rows]))
     shutil.rmtree(folder, ignore_errors=True)

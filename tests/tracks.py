@@ -17,8 +17,8 @@ from tests import media_samples as samples
 
 CUT, COUNT = 6, 12
 """First frame of the second shot, and number of frames."""
-QUICK = TriangulateOptions(iterations=16, frame_iterations=4, refine=RefineOptions(triangles=40))
-QUICK_FLAGS = ("--iterations", "16", "--frame-iterations", "4", "--triangles", "40")
+QUICK = TriangulateOptions(iterations=8, frame_iterations=4, refine=RefineOptions(triangles=40))
+QUICK_FLAGS = ("--iterations", "8", "--frame-iterations", "4", "--triangles", "40")
 
 
 def write_clip(path: Path) -> Path:

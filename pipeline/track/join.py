@@ -16,12 +16,13 @@ from stages.media.commit import PendingFile
 from warp_kernels.errors import OptionError, TrackError
 
 
-def join(parts: Sequence[Path], output: Path) -> Header:
+def join(parts: Sequence[Path], output: Path, frame_range: FrameRange | None = None) -> Header:
     """Put tracks together; the rows are those of the parts, to the bit.
 
     Args:
         parts: The tracks, in any order.
         output: The joined track; it appears when it is complete.
+        frame_range: The range that the parts are all of; None to conclude it from them.
 
     Returns:
         Its header.
@@ -41,7 +42,7 @@ def join(parts: Sequence[Path], output: Path) -> Header:
         step = readers[0].header.frame_range.step
         for before, after in pairwise(readers):
             _check_follows(before, after, step)
-        header = readers[0].header.with_range(_whole_range(readers))
+        header = readers[0].header.with_range(frame_range or _whole_range(readers))
         ordered = [reader.path for reader in readers]
     pending = PendingFile(output)
     try:
