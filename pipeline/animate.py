@@ -1,29 +1,32 @@
-"""Video in, triangulated video out: the only loop over time."""
+"""Video in, triangulated video out: the only loops over time.
 
-from collections.abc import Iterable, Iterator
-from contextlib import closing
-from dataclasses import dataclass
+Solving turns frames into snapshots, drawing turns snapshots into frames. `animate` does both at
+once, `solve` the first and `render` the second, with a mesh track in between.
+"""
+
+from collections import deque
+from collections.abc import Generator, Iterable, Iterator
+from contextlib import closing, nullcontext
+from dataclasses import dataclass, replace
 from time import perf_counter
 
 import numpy as np
 
+from pipeline.drawing import Drawing, check_drawing
 from pipeline.job import Job
+from pipeline.past import Past, open_track, past_of
 from pipeline.progress import Progress
-from pipeline.shots import ShotFrame, with_shots
+from pipeline.shots import with_shots
+from pipeline.steps import Step, check_cuts, open_around, steps
 from pipeline.stream import Behind, ahead
+from pipeline.track import FrameRow, TrackReader, TrackWriter
 from stages.advect import advect
-from stages.flows import FlowField
 from stages.frame import Frame
-from stages.media import check_output, open_decoder, open_encoder
-from stages.media.encode import Encoder
-from stages.render import Renderer
+from stages.media import Decoder, FrameRange, MediaInfo, open_decoder
 from stages.snapshot import Snapshot
 from stages.triangulate import Triangulator
-from stages.weights import open_weights
-from warp_kernels.color_model import CONSTANT, LINEAR
+from stages.weights import EvenWeights, WeightMap, open_weights
 from warp_kernels.device import Device
-from warp_kernels.errors import MediaError
-from warp_kernels.styles import Flat, Gradient, Style
 
 DECODED_AHEAD = 3
 """Decoded frames that may wait."""
@@ -48,19 +51,22 @@ class Animated:
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class Step:
-    """A frame and the motion that led to it."""
+class Solved:
+    """What a frame became."""
 
-    frame: Frame
-    """The frame."""
-    motion: FlowField | None
-    """Motion from the frame before, or None where a mesh starts anew."""
+    snapshot: Snapshot
+    """Its triangles and colours."""
+    shot: int
+    """Number of the frame with which its shot begins."""
+    is_stored: bool = False
+    """Whether the track holds it already."""
 
 
 def animate(job: Job, progress: Progress) -> Animated:
     """Convert a source.
 
-    Nothing is written under the output's name unless the whole job succeeds.
+    Nothing is written under the output's name unless the whole job succeeds; a track that the
+    job writes beside it keeps every frame that was solved.
 
     Args:
         job: What to do.
@@ -70,75 +76,159 @@ def animate(job: Job, progress: Progress) -> Animated:
         MediaError: If the source or the map of weights cannot be read.
         OptionError: If an option does not fit the source.
         OutputError: If the output cannot be written.
+        TrackError: If the track to go on with cannot be.
+    """
+    return _convert(job, progress, draws=True)
+
+
+def solve(job: Job, progress: Progress) -> Animated:
+    """Solve a source and write the mesh track alone.
+
+    Args:
+        job: What to do; `track` is what is written.
+        progress: Told of every finished frame.
+
+    Raises:
+        MediaError: If the source cannot be read.
+        OptionError: If an option does not fit the source.
+        OutputError: If the track cannot be written.
+        TrackError: If the track to go on with cannot be.
+    """
+    return _convert(job, progress, draws=False)
+
+
+def render(job: Job, track: TrackReader, info: MediaInfo, progress: Progress) -> Animated:
+    """Draw a track.
+
+    Args:
+        job: What to do, with the options that the track was made with.
+        track: Holds the snapshots.
+        info: The track's source as far as it can still be read.
+        progress: Told of every finished frame.
+
+    Raises:
+        MediaError: If the source is needed and cannot be read.
+        OptionError: If an option does not fit the track.
+        OutputError: If the output cannot be written.
+        TrackError: If the track is damaged.
     """
     begun = perf_counter()
-    errors: list[float] = []
-    with open_decoder(job.source, job.frame_range) as decoder:
+    check_drawing(job, info)
+    device = Device(job.device, job.threads)
+    rows = track.rows_in(job.frame_range)
+    tally = _Tally(progress, len(rows))
+    drawing = Drawing(job, info, device)
+    with drawing, Behind(drawing.draw, SOLVED_BEHIND) as writer:
+        for snapshot, row in zip(_fitted(track, rows, job, device), rows, strict=True):
+            writer.put(snapshot)
+            tally.add(row.triangle_count, snapshot.rmse)
+    return tally.result(begun, (), drawing.notes)
+
+
+def _convert(job: Job, progress: Progress, *, draws: bool) -> Animated:
+    """Solve a job, and draw it at once if that is wanted."""
+    begun = perf_counter()
+    past = past_of(job)
+    with open_around(job, None if past is None else past.reached) as decoder:
         info = decoder.info
-        picture = (info.width, info.height)
-        output = job.size_for(picture)
-        check_output(job.output, info, output, job.encode, job.frame_range)
-        weights = open_weights(job.weights, picture, job.frame_range)
+        check_cuts(job.cuts, job.source, info)
+        if draws:
+            check_drawing(job, info)
         device = Device(job.device, job.threads)
-        styles = job.styles or (_plain_style(job),)
-        triangulator = _triangulator(job, device, picture, styles)
-        renderer = Renderer(device, picture, output, styles)
-        encoder = open_encoder(job.output, info, output, job.encode, job.frame_range)
-        total = _expected(job, info.frame_count)
-        shot_frames = with_shots(weights.beside(decoder), job.cuts)
-        steps = ahead(_with_motion(shot_frames, job), DECODED_AHEAD)
-        with encoder, closing(steps), Behind(_Writer(renderer, encoder), SOLVED_BEHIND) as writer:
-            for snapshot in _solve(steps, triangulator, job):
-                writer.put(snapshot)
-                errors.append(snapshot.rmse)
-                progress.frame(len(errors), total, snapshot.mesh.triangle_count, snapshot.rmse)
-            if not errors:
-                raise MediaError(job.source, f"no frame in {job.frame_range}", "check --frames")
-    return Animated(
-        frames=len(errors),
-        seconds=perf_counter() - begun,
-        mean_rmse=float(np.mean(errors)),
-        warnings=(*decoder.warnings, *weights.warnings),
-        notes=(*decoder.notes, *weights.notes, *encoder.notes),
-    )
+        weights = open_weights(job.weights, (info.width, info.height), job.frame_range)
+        triangulator = _triangulator(job, info, device)
+        drawing = Drawing(job, info, device) if draws else None
+        tally = _Tally(progress, _expected(job, info.frame_count))
+        notes = [] if past is None else past.notes
+        found = _open_steps(decoder, weights, job, past, notes)
+        with open_track(job, info, past) as track:
+            writer = Behind(_Writer(track, drawing), SOLVED_BEHIND)
+            with drawing or nullcontext(), closing(found), writer:
+                if past is not None:
+                    _recall(job, tally, writer if draws else None)
+                for solved in _solve(found, triangulator, job, past):
+                    writer.put(solved)
+                    tally.add(solved.snapshot.mesh.triangle_count, solved.snapshot.rmse)
+            if track is not None:
+                track.finish()
+    made = [] if drawing is None else drawing.notes
+    warnings = (*decoder.warnings, *weights.warnings)
+    return tally.result(begun, warnings, [*decoder.notes, *weights.notes, *notes, *made])
 
 
-def _triangulator(
-    job: Job, device: Device, size: tuple[int, int], styles: tuple[Style, ...]
-) -> Triangulator:
-    """What makes snapshots for the styles that will be drawn."""
-    drawn = LINEAR if any(style.degree > 0 for style in styles) else CONSTANT
-    weighted = job.weights is not None
-    return Triangulator(device, size, job.triangulate, drawn, weighted=weighted)
+def _triangulator(job: Job, info: MediaInfo, device: Device) -> Triangulator:
+    """What makes snapshots of a source for the looks that will be drawn."""
+    size = (info.width, info.height)
+    return Triangulator(device, size, job.triangulate, job.fitted, weighted=job.weights is not None)
 
 
-def _with_motion(shot_frames: Iterable[ShotFrame], job: Job) -> Iterator[Step]:
-    """Estimate the motion between the frames of a shot."""
-    before: Frame | None = None
-    for shot_frame in shot_frames:
-        frame = shot_frame.frame
-        motion: FlowField | None = None
-        if before is not None and not shot_frame.opens_shot and not job.independent:
-            motion = job.flow.estimate(before.pixels, frame.pixels)
-        yield Step(frame, motion)
-        before = frame
+def _open_steps(
+    decoder: Decoder,
+    weights: EvenWeights | WeightMap,
+    job: Job,
+    past: Past | None,
+    notes: list[str],
+) -> Generator[Step, None, None]:
+    """Decode, find cuts and estimate motion ahead of the solution."""
+    reached = None if past is None else past.reached
+    found = steps(with_shots(decoder, job.cuts), decoder.info, job, reached, notes)
+    return ahead(_weighed(found, weights), DECODED_AHEAD)
 
 
-def _solve(steps: Iterable[Step], triangulator: Triangulator, job: Job) -> Iterator[Snapshot]:
+def _weighed(found: Iterable[Step], weights: EvenWeights | WeightMap) -> Iterator[Step]:
+    """Steps whose frames have their weights; frames around the range need none."""
+    waiting: deque[Step] = deque()
+
+    def frames() -> Iterator[Frame]:
+        """The frames of the steps, which wait for them."""
+        for step in found:
+            waiting.append(step)
+            yield step.frame
+
+    for frame in weights.beside(frames()):
+        yield replace(waiting.popleft(), frame=frame)
+
+
+def _solve(
+    found: Iterable[Step], triangulator: Triangulator, job: Job, past: Past | None
+) -> Iterator[Solved]:
     """Triangulate frame after frame, each from the mesh of the one before."""
-    snapshot: Snapshot | None = None
-    for step in steps:
+    snapshot = None if past is None else past.snapshot
+    for step in found:
         if snapshot is None or step.motion is None:
             rng = np.random.default_rng([job.seed, step.frame.index])
             snapshot = triangulator.first(step.frame, job.layout, rng)
         else:
             snapshot = triangulator.next(step.frame, advect(snapshot.mesh, step.motion))
-        yield snapshot
+        yield Solved(snapshot, step.shot)
 
 
-def _plain_style(job: Job) -> Style:
-    """The look that shows the optimised colours as they are."""
-    return Gradient() if job.triangulate.model.degree > 0 else Flat()
+def _recall(job: Job, tally: "_Tally", writer: Behind[Solved] | None) -> None:
+    """Count what the track holds already, and draw it if that is wanted."""
+    assert job.track is not None
+    with TrackReader(job.track) as track:
+        for row in track.rows_in(job.frame_range):
+            if writer is not None:
+                writer.put(Solved(track.snapshot(row.frame), row.shot, is_stored=True))
+            tally.add(row.triangle_count, row.rmse, is_told=writer is not None)
+
+
+def _fitted(
+    track: TrackReader, rows: list[FrameRow], job: Job, device: Device
+) -> Iterator[Snapshot]:
+    """The snapshots of a track; where a look needs other colours, these are fitted again."""
+    info = track.header.info
+    if job.fitted == track.header.model:
+        yield from track.snapshots(rows)
+        return
+    weights = open_weights(job.weights, (info.width, info.height), job.frame_range)
+    triangulator = _triangulator(job, info, device)
+    wanted = {row.frame for row in rows}
+    around = FrameRange(rows[0].frame, rows[-1].frame, track.header.frame_range.step)
+    with open_decoder(job.source, around) as decoder:
+        frames = (frame for frame in decoder if frame.index in wanted)
+        for frame in weights.beside(frames):
+            yield triangulator.fit(frame, track.snapshot(frame.index).mesh)
 
 
 def _expected(job: Job, frame_count: int | None) -> int | None:
@@ -150,13 +240,42 @@ def _expected(job: Job, frame_count: int | None) -> int | None:
     return max(0, (last - wanted.first) // wanted.step + 1)
 
 
+class _Tally:
+    """Counts finished frames and tells of them."""
+
+    def __init__(self, progress: Progress, total: int | None) -> None:
+        self._progress = progress
+        self._total = total
+        self._errors: list[float] = []
+        self._told = 0
+
+    def add(self, triangles: int, rmse: float, *, is_told: bool = True) -> None:
+        """Count a frame; what an earlier run told of is not told again."""
+        self._errors.append(rmse)
+        if is_told:
+            self._told += 1
+            self._progress.frame(len(self._errors), self._total, triangles, rmse)
+
+    def result(self, begun: float, warnings: Iterable[str], notes: Iterable[str]) -> Animated:
+        """What the job came to."""
+        return Animated(
+            frames=self._told,
+            seconds=perf_counter() - begun,
+            mean_rmse=float(np.mean(self._errors)),
+            warnings=tuple(warnings),
+            notes=tuple(notes),
+        )
+
+
 class _Writer:
-    """Draws and encodes one snapshot."""
+    """Stores a solved frame, and draws it."""
 
-    def __init__(self, renderer: Renderer, encoder: Encoder) -> None:
-        self._renderer = renderer
-        self._encoder = encoder
+    def __init__(self, track: TrackWriter | None, drawing: Drawing | None) -> None:
+        self._track = track
+        self._drawing = drawing
 
-    def __call__(self, snapshot: Snapshot) -> None:
-        pixels = self._renderer.render(snapshot)
-        self._encoder.write(pixels, snapshot.pts, snapshot.time_base, snapshot.frame_index)
+    def __call__(self, solved: Solved) -> None:
+        if self._track is not None and not solved.is_stored:
+            self._track.write(solved.snapshot, solved.shot)
+        if self._drawing is not None:
+            self._drawing.draw(solved.snapshot)

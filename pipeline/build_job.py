@@ -28,6 +28,10 @@ def build_job(given: Mapping[str, Any]) -> Job:
     values = dict(given)
     values["source"], values["output"] = Path(given["source"]), Path(given["output"])
     values["frame_range"] = frame_range(given)
+    if given.get("track") is not None:
+        values["track"] = Path(given["track"])
+    if given.get("resume"):
+        values["overwrite"] = True  # what is drawn from a track replaces what was drawn before
     for name, registry in (("layout", LAYOUTS), ("flow", FLOWS)):
         if name in given:
             values[name] = parse_member(f"--{name}", given[name], registry)

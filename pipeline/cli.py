@@ -13,9 +13,14 @@ import traceback
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from pipeline.parser import build_parser
+
+if TYPE_CHECKING:
+    from pipeline.animate import Animated
+    from pipeline.job import Job
+    from pipeline.progress import Progress
 
 INTERRUPTED = 130
 TERMINATED = 143
@@ -47,7 +52,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     except BaseException as error:  # one place where every failure becomes a line and a code
         if arguments.debug:
             traceback.print_exc()
-        return _report(error)
+        return _report(error, arguments)
     return 0
 
 
@@ -57,25 +62,81 @@ def run_animate(arguments: argparse.Namespace) -> None:
     Args:
         arguments: What the user gave; options that were left out are absent.
     """
-    from pipeline.build_job import build_job
-    from pipeline.options import with_preset
-    from pipeline.preset_file import read_preset
-    from pipeline.progress import Summary, open_progress
+    job = _job(arguments)
+    with _progress(arguments) as progress:
+        if job.jobs > 1:
+            from pipeline.parts import animate_in_parts
 
-    given = dict(vars(arguments))
-    name = given.pop("preset")
-    job = build_job(with_preset(given, read_preset(name) if name else {}))
-    chosen = "none" if arguments.quiet and arguments.progress == "auto" else arguments.progress
-    verbose = arguments.verbose or not (arguments.quiet or chosen == "none")
-    with open_progress(chosen, verbose=verbose) as progress:
-        from pipeline.animate import animate
+            _tell(progress, animate_in_parts(job, progress), job.output)
+        else:
+            from pipeline.animate import animate
 
-        result = animate(job, progress)
-        for note in result.notes:
+            _tell(progress, animate(job, progress), job.output)
+
+
+def run_solve(arguments: argparse.Namespace) -> None:
+    """Convert a source to a mesh track.
+
+    Args:
+        arguments: What the user gave; options that were left out are absent.
+    """
+    # Looks, which a preset may hold, do not belong to a track.
+    job = _job(arguments, track=arguments.output, styles=())
+    with _progress(arguments) as progress:
+        if job.jobs > 1:
+            from pipeline.parts import solve_in_parts
+
+            _tell(progress, solve_in_parts(job, progress), job.output)
+        else:
+            from pipeline.animate import solve
+
+            _tell(progress, solve(job, progress), job.output)
+
+
+def run_render(arguments: argparse.Namespace) -> None:
+    """Draw a mesh track.
+
+    Args:
+        arguments: What the user gave; options that were left out are absent.
+    """
+    source = None if arguments.source is None else Path(arguments.source)
+    look = _job(arguments, source=arguments.track, track=None)
+    from pipeline.animate import render
+    from pipeline.render_job import render_job
+    from pipeline.track import TrackReader
+
+    with TrackReader(look.source) as track, _progress(arguments) as progress:
+        made = render_job(look, track, source)
+        for note in made.notes:
             progress.note(note)
-        for warning in result.warnings:
+        for warning in made.warnings:
             progress.warn(warning)
-        progress.finish(Summary(result.frames, result.seconds, result.mean_rmse, job.output))
+        _tell(progress, render(made.job, track, made.info, progress), look.output)
+
+
+def run_plan(arguments: argparse.Namespace) -> None:
+    """Print ranges of whole shots.
+
+    Args:
+        arguments: What the user gave; options that were left out are absent.
+    """
+    from pipeline.build_job import build_job
+    from pipeline.plan import plan
+
+    found = plan(build_job({**vars(arguments), "output": ""}), arguments.parts)
+    print(found.as_json() if arguments.json else found.as_lines())
+
+
+def run_join(arguments: argparse.Namespace) -> None:
+    """Put tracks together.
+
+    Args:
+        arguments: What the user gave.
+    """
+    from pipeline.join_tracks import join_tracks
+
+    parts = [Path(name) for name in arguments.tracks]
+    join_tracks(parts, Path(arguments.output), overwrite=arguments.overwrite)
 
 
 def run_info(arguments: argparse.Namespace) -> None:
@@ -105,17 +166,58 @@ def run_measure(arguments: argparse.Namespace) -> None:
 
 COMMANDS: dict[str, Callable[[argparse.Namespace], None]] = {
     "animate": run_animate,
+    "solve": run_solve,
+    "render": run_render,
+    "plan": run_plan,
+    "join": run_join,
     "info": run_info,
     "measure": run_measure,
 }
 """What each subcommand runs."""
 
 
-def _report(error: BaseException) -> int:
+def _job(arguments: argparse.Namespace, **fixed: object) -> "Job":
+    """The job that the arguments and their preset describe.
+
+    Args:
+        arguments: What the user gave.
+        fixed: What the command decides itself.
+    """
+    from pipeline.build_job import build_job
+    from pipeline.options import with_preset
+    from pipeline.preset_file import read_preset
+
+    given = dict(vars(arguments))
+    name = given.pop("preset")
+    return build_job({**with_preset(given, read_preset(name) if name else {}), **fixed})
+
+
+def _progress(arguments: argparse.Namespace) -> "Progress":
+    """What tells of the run, as the user wants it."""
+    from pipeline.progress import open_progress
+
+    chosen = "none" if arguments.quiet and arguments.progress == "auto" else arguments.progress
+    verbose = arguments.verbose or not (arguments.quiet or chosen == "none")
+    return open_progress(chosen, verbose=verbose)
+
+
+def _tell(progress: "Progress", result: "Animated", output: Path) -> None:
+    """Tell what came of a run."""
+    from pipeline.progress import Summary
+
+    for note in result.notes:
+        progress.note(note)
+    for warning in result.warnings:
+        progress.warn(warning)
+    progress.finish(Summary(result.frames, result.seconds, result.mean_rmse, output))
+
+
+def _report(error: BaseException, arguments: argparse.Namespace) -> int:
     """Tell about a failure in one line.
 
     Args:
         error: What ended the command.
+        arguments: What the user gave.
 
     Returns:
         The exit code.
@@ -125,9 +227,9 @@ def _report(error: BaseException) -> int:
     if isinstance(error, TrimotionError):
         return _fail(str(error), error.exit_code)
     if isinstance(error, KeyboardInterrupt):
-        return _fail("interrupted; no unfinished file is left", INTERRUPTED)
+        return _fail(f"interrupted; {_left_over(arguments)}", INTERRUPTED)
     if isinstance(error, Terminated):
-        return _fail("terminated; no unfinished file is left", TERMINATED)
+        return _fail(f"terminated; {_left_over(arguments)}", TERMINATED)
     if isinstance(error, BrokenPipeError):
         # The reader of our output left. What is still buffered must not raise at exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -136,6 +238,13 @@ def _report(error: BaseException) -> int:
         return _fail("out of memory; try a smaller --scale, or a smaller source", 1)
     kind = type(error).__name__
     return _fail(f"internal error ({kind}: {error}); run again with --debug and report it", 1)
+
+
+def _left_over(arguments: argparse.Namespace) -> str:
+    """What an interrupted command leaves."""
+    if arguments.command == "solve" or (arguments.command == "animate" and "track" in arguments):
+        return "the track keeps what was solved, and --resume goes on with it"
+    return "no unfinished file is left"
 
 
 def _fail(text: str, code: int) -> int:

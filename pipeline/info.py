@@ -1,28 +1,83 @@
 """What a file is, for people and for programs."""
 
+import dataclasses
 import json
 from pathlib import Path
 
+from pipeline.plain_values import to_plain
+from pipeline.track import TrackReader, is_track
+from pipeline.track.schema import FORMAT
 from stages.media import MediaInfo, probe
+
+MOST_SHOTS = 12
+"""Shots of a track that are listed for people."""
 
 
 def describe(path: Path, *, as_json: bool) -> str:
-    """Describe a source.
+    """Describe a source or a mesh track.
 
     Args:
-        path: A video, a still or a pattern of numbered stills.
+        path: A video, a still, a pattern of numbered stills or a track.
         as_json: Whether to give JSON rather than lines.
 
     Raises:
         MediaError: If it cannot be read.
+        TrackError: If it is a damaged track.
         OptionError: If a pattern has more than one number field.
     """
+    if is_track(path):
+        with TrackReader(path) as track:
+            return json.dumps(_facts(track), indent=2) if as_json else _aligned(_track_rows(track))
     info = probe(path)
-    if as_json:
-        return json.dumps(info.as_dict(), indent=2)
-    rows = _rows(info)
+    return json.dumps(info.as_dict(), indent=2) if as_json else _aligned(_rows(info))
+
+
+def _aligned(rows: list[tuple[str, str]]) -> str:
     width = max(len(label) for label, _ in rows)
     return "\n".join(f"{label:<{width}}  {value}" for label, value in rows)
+
+
+def _facts(track: TrackReader) -> dict[str, object]:
+    """All that a track says about itself, but its meshes."""
+    header = track.header
+    return {
+        "file": str(track.path),
+        "kind": "track",
+        "format": FORMAT,
+        "program": header.program,
+        "libraries": dict(header.libraries),
+        "finished": header.finished,
+        "frame_range": str(header.frame_range),
+        "shots": list(track.shots),
+        "model": header.model.name,
+        "source": to_plain(header.source),
+        "info": header.info.as_dict(),
+        "options": dict(header.options),
+        "frames": [dataclasses.asdict(row) for row in track.rows],
+    }
+
+
+def _track_rows(track: TrackReader) -> list[tuple[str, str]]:
+    """Labels and values that say what a track is."""
+    header, rows, shots = track.header, track.rows, track.shots
+    ends = f"{rows[0].frame} to {rows[-1].frame}, {len(rows)} in all" if rows else "none"
+    if not header.finished:
+        ends += f"; unfinished, {header.frame_range} were asked for"
+    starts = ", ".join(map(str, shots[:MOST_SHOTS])) + (", ..." if len(shots) > MOST_SHOTS else "")
+    told = [
+        ("file", str(track.path)),
+        ("kind", f"mesh track of format {FORMAT}, by trimotion {header.program}"),
+        ("source", header.source.path),
+        ("size", _size(header.info)),
+        ("frames", ends),
+        ("shots", f"{len(shots)}, from frames {starts}" if shots else "none"),
+        ("colours", header.model.name),
+    ]
+    if rows:
+        counts = [row.triangle_count for row in rows]
+        told.append(("triangles", f"{min(counts)} to {max(counts)}"))
+        told.append(("mean rmse", f"{sum(row.rmse for row in rows) / len(rows):.2f}"))
+    return told
 
 
 def _rows(info: MediaInfo) -> list[tuple[str, str]]:

@@ -1,4 +1,4 @@
-"""Everything that one run of `animate` needs, checked and with every default filled in.
+"""Everything that one run of `animate` or `solve` needs, checked and with every default filled in.
 
 The options of the command line are the fields of `Job`, and of the dataclasses inside it, that
 carry `help`: their defaults, help and choices stand there and nowhere else. Metadata of a field:
@@ -21,9 +21,10 @@ from stages.layouts import Layout
 from stages.layouts.importance import Importance
 from stages.media import EncodeOptions, FrameRange
 from stages.triangulate import TriangulateOptions
+from warp_kernels.color_model import CONSTANT, LINEAR, ColorModel
 from warp_kernels.errors import OptionError
 from warp_kernels.raster import MAX_SIDE
-from warp_kernels.styles import Style
+from warp_kernels.styles import Flat, Gradient, Style
 
 MAX_THREADS = 1024
 """More than any machine has cores; beyond it a number is a mistake."""
@@ -130,6 +131,27 @@ class Job:
         },
     )
     """Whether every frame starts from a new layout."""
+    track: Path | None = field(
+        default=None,
+        metadata={
+            "help": "also write the mesh track, from which other looks can be drawn",
+            "metavar": "FILE.mtrk",
+            "group": "output",
+        },
+    )
+    """The mesh track that is written, or None."""
+    resume: bool = field(
+        default=False,
+        metadata={
+            "help": "go on with the track of an interrupted job, to the same bits",
+            "group": "output",
+        },
+    )
+    """Whether to go on with the track if there is one."""
+    jobs: int = field(
+        default=1, metadata={"help": "processes, each for whole shots", "group": "processes"}
+    )
+    """Number of processes."""
 
     def __post_init__(self) -> None:
         if self.output_size is not None and self.scale is not None:
@@ -148,6 +170,20 @@ class Job:
             )
         if self.seed < 0:
             raise OptionError(f"--seed {self.seed}: must be 0 or more")
+        if not 1 <= self.jobs <= MAX_THREADS:
+            raise OptionError(f"--jobs {self.jobs}: must lie between 1 and {MAX_THREADS}")
+
+    @property
+    def shown_styles(self) -> tuple[Style, ...]:
+        """Looks, bottom to top; the one that shows the optimised colours if none is chosen."""
+        plain = Gradient() if self.triangulate.model.degree > 0 else Flat()
+        return self.styles or (plain,)
+
+    @property
+    def fitted(self) -> ColorModel:
+        """The colour model of the snapshots: the optimised one, or what a look needs beyond."""
+        drawn = LINEAR if any(style.degree > 0 for style in self.shown_styles) else CONSTANT
+        return max(self.triangulate.model, drawn, key=lambda model: model.degree)
 
     def size_for(self, source_size: tuple[int, int]) -> tuple[int, int]:
         """Size of the output for a source.

@@ -22,6 +22,7 @@ HEADINGS = {
     "look": "look",
     "output": "output file",
     "run": "run",
+    "processes": "processes",
 }
 """Groups of the help, in order, and their titles."""
 
@@ -155,17 +156,21 @@ def job_options() -> tuple[Option, ...]:
     return tuple(options)
 
 
-def add_job_options(parser: argparse.ArgumentParser) -> None:
-    """Give a parser all options of a job; what is not given does not appear in the result.
+def add_job_options(
+    parser: argparse.ArgumentParser, wanted: Callable[[Option], bool] = lambda option: True
+) -> None:
+    """Give a parser options of a job; what is not given does not appear in the result.
 
     Args:
         parser: Takes the options, in groups.
+        wanted: Which options; all, if left out.
     """
     for key, title in HEADINGS.items():
-        group = parser.add_argument_group(title)
-        sizes = group.add_mutually_exclusive_group() if key == "look" else group
-        for option in job_options():
-            if option.group == key:
+        options = [option for option in job_options() if option.group == key and wanted(option)]
+        if options:
+            group = parser.add_argument_group(title)
+            sizes = group.add_mutually_exclusive_group() if key == "look" else group
+            for option in options:
                 _add(sizes if option.dest in EXCLUSIVE else group, option)
 
 

@@ -5,7 +5,7 @@ import difflib
 from collections.abc import Sequence
 from typing import Any, NoReturn
 
-from pipeline.flags import text_value
+from pipeline.flags import text_value, whole_number
 from pipeline.options import add_job_options, add_range_options, registry_help
 from pipeline.progress import CHOICES
 
@@ -18,12 +18,18 @@ examples:
   trimotion animate clip.mp4 -o part.webm --frames 100-199 --color linear --scale 0.5
   trimotion animate photo.jpg -o poster.png --triangles 700 --scale 2
   trimotion animate clip.mp4 -o quick.mp4 --preset preview
+  trimotion solve clip.mp4 -o clip.mtrk --jobs 4
+  trimotion render clip.mtrk -o lines.mp4 --style flat --style edges --scale 2
 """
 
 COMMANDS_HELP = """\
 commands:
   animate INPUT -o OUTPUT    convert a video, a still or numbered stills
-  info FILE                  what a file is
+  solve INPUT -o JOB.mtrk    convert to a mesh track, from which any look can be drawn
+  render JOB.mtrk -o OUTPUT  draw a mesh track
+  plan INPUT                 ranges of whole shots, for runs on several machines
+  join A.mtrk B.mtrk ... -o OUT.mtrk   put the tracks of ranges together
+  info FILE                  what a file is: a source or a mesh track
   measure SOURCE OUTPUT      how close an output is to its source
 
 trimotion COMMAND --help tells the options of a command.
@@ -51,13 +57,9 @@ class _Version(argparse.Action):
     """Prints the version, which takes a while to find, only when asked."""
 
     def __call__(self, parser: argparse.ArgumentParser, *_: object) -> NoReturn:
-        from importlib import metadata
+        from pipeline.version import program_version
 
-        try:
-            version = metadata.version("trimotion")
-        except metadata.PackageNotFoundError:
-            version = "(not installed)"
-        print(f"trimotion {version}")
+        print(f"trimotion {program_version()}")
         parser.exit()
 
 
@@ -76,6 +78,10 @@ def build_parser() -> argparse.ArgumentParser:
         dest="command", metavar="COMMAND", required=True, help=argparse.SUPPRESS
     )
     _add_animate(commands)
+    _add_solve(commands)
+    _add_render(commands)
+    _add_plan(commands)
+    _add_join(commands)
     _add_info(commands)
     _add_measure(commands)
     return parser
@@ -90,15 +96,91 @@ def _add_animate(commands: Any) -> None:
         registry_help() + "\n\n" + EXAMPLES,
     )
     parser.add_argument("source", metavar="INPUT", type=text_value, help="what FFmpeg reads")
-    parser.add_argument(
-        "-o",
-        dest="output",
-        metavar="OUTPUT",
-        type=text_value,
-        required=True,
-        help="mp4, mov, mkv, webm, gif, a still, or stills such as shot_####.png",
+    _add_output(
+        parser, "OUTPUT", "mp4, mov, mkv, webm, gif, a still, or stills such as shot_####.png"
     )
     add_job_options(parser)
+    _add_messages(parser)
+
+
+def _add_solve(commands: Any) -> None:
+    parser = _command(
+        commands,
+        "solve",
+        "Convert a source to a mesh track. A run that is killed goes on with --resume.",
+        "trimotion solve INPUT -o JOB.mtrk [options]",
+        EXAMPLES,
+    )
+    parser.add_argument("source", metavar="INPUT", type=text_value, help="what FFmpeg reads")
+    _add_output(parser, "JOB.mtrk", "the mesh track")
+    add_job_options(
+        parser,
+        lambda o: o.group not in ("look", "output") or o.dest in ("overwrite", "resume"),
+    )
+    _add_messages(parser)
+
+
+def _add_render(commands: Any) -> None:
+    parser = _command(
+        commands,
+        "render",
+        "Draw a mesh track, or a part of it, in any style and size.",
+        "trimotion render JOB.mtrk -o OUTPUT [options]",
+        EXAMPLES,
+    )
+    parser.add_argument("track", metavar="JOB.mtrk", type=text_value, help="a mesh track")
+    _add_output(parser, "OUTPUT", "what animate writes")
+    parser.add_argument(
+        "--source", metavar="INPUT", type=text_value, help="where the source is now"
+    )
+    add_job_options(
+        parser,
+        lambda o: (
+            (o.group in ("range", "look", "output") and o.dest not in ("track", "resume"))
+            or o.dest in ("device", "threads")
+        ),
+    )
+    _add_messages(parser)
+
+
+def _add_plan(commands: Any) -> None:
+    parser = _command(
+        commands,
+        "plan",
+        "Print ranges of whole shots, one a line: solved apart and joined they are the whole.",
+        "trimotion plan INPUT [--parts N] [--json]",
+        "",
+    )
+    parser.add_argument("source", metavar="INPUT", type=text_value, help="what FFmpeg reads")
+    parser.add_argument(
+        "--parts", metavar="N", type=whole_number, help="at most so many (default: one a shot)"
+    )
+    parser.add_argument("--json", action="store_true", help="print JSON")
+    add_job_options(parser, lambda o: o.group == "range" or o.dest == "cuts")
+
+
+def _add_join(commands: Any) -> None:
+    parser = _command(
+        commands,
+        "join",
+        "Put the tracks of ranges that follow each other together.",
+        "trimotion join A.mtrk B.mtrk ... -o OUT.mtrk",
+        "",
+    )
+    parser.add_argument(
+        "tracks", metavar="TRACK.mtrk", nargs="+", type=text_value, help="in any order"
+    )
+    _add_output(parser, "OUT.mtrk", "the joined track")
+    parser.add_argument("--overwrite", action="store_true", help="replace an existing track")
+
+
+def _add_output(parser: argparse.ArgumentParser, metavar: str, text: str) -> None:
+    parser.add_argument(
+        "-o", dest="output", metavar=metavar, type=text_value, required=True, help=text
+    )
+
+
+def _add_messages(parser: argparse.ArgumentParser) -> None:
     group = parser.add_argument_group("presets and messages")
     group.add_argument(
         "--preset",
@@ -124,7 +206,9 @@ def _add_animate(commands: Any) -> None:
 
 def _add_info(commands: Any) -> None:
     parser = _command(commands, "info", "Print what a file is.", "trimotion info FILE [--json]", "")
-    parser.add_argument("file", metavar="FILE", type=text_value, help="what FFmpeg reads")
+    parser.add_argument(
+        "file", metavar="FILE", type=text_value, help="a mesh track or what FFmpeg reads"
+    )
     parser.add_argument("--json", action="store_true", help="print JSON")
 
 

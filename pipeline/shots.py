@@ -1,6 +1,7 @@
 """Where one shot ends and the next begins."""
 
 import json
+from bisect import bisect_right
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -73,10 +74,13 @@ def with_shots(frames: Iterable[Frame], cuts: str) -> Iterator[ShotFrame]:
 
 
 def _listed(frames: Iterable[Frame], cuts: frozenset[int]) -> Iterator[ShotFrame]:
-    first = True
+    """Obey a list; a cut at a frame that is skipped opens a shot with the next one."""
+    ordered = sorted(cuts)
+    before: int | None = None
     for frame in frames:
-        yield ShotFrame(frame, first or frame.index in cuts)
-        first = False
+        passed = bisect_right(ordered, frame.index)
+        yield ShotFrame(frame, before is None or passed > before)
+        before = passed
 
 
 def _detected(frames: Iterable[Frame]) -> Iterator[ShotFrame]:

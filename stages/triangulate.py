@@ -181,6 +181,17 @@ class Triangulator:
         mesh = self._follow(mesh, seed, options.frame_iterations - options.frame_iterations // 2)
         return self._snapshot(frame, mesh)
 
+    def fit(self, frame: Frame, mesh: Mesh) -> Snapshot:
+        """Fit the colours alone, to a mesh that stays as it is.
+
+        Args:
+            frame: The frame.
+            mesh: What it became before.
+        """
+        self._load(frame)
+        load_mesh(self._workspace, mesh)
+        return self._snapshot(frame, mesh)
+
     def _followed_count(self, frame: Frame, mesh: Mesh) -> int:
         """How many triangles a later frame shall have; a quality lets their number drift."""
         refine = self.options.refine

@@ -13,6 +13,7 @@ import pytest
 from scipy.ndimage import gaussian_filter
 
 import pipeline.animate
+import pipeline.drawing
 from pipeline.animate import Animated, animate
 from pipeline.job import Job
 from pipeline.progress import Progress
@@ -260,7 +261,7 @@ def test_failure_anywhere_leaves_nothing(place: str, clip: Path, tmp_path: Path)
         raise RuntimeError("planted")
 
     owners = {
-        "Renderer.render": pipeline.animate.Renderer,
+        "Renderer.render": pipeline.drawing.Renderer,
         "Triangulator.next": Triangulator,
         "Dis.estimate": type(Job(clip, tmp_path / "x.mp4").flow),
     }

@@ -85,6 +85,8 @@ USAGE_ERRORS = [
     ("--threads -1", "-1"),
     ("--threads 123456", "123456"),
     ("--seed -1", "-1"),
+    ("--jobs 0", "--jobs 0"),
+    ("--jobs some", "some"),
     ("--progress loud", "plain"),
     ("--preset nowhere", "preview"),
     ("--triangle 5", "--triangles"),
@@ -166,6 +168,13 @@ def test_impossible_option_is_one_line(
         "animate -o out.mp4",
         "info",
         "measure a",
+        "solve in.mp4",
+        "solve in.mp4 -o a.mtrk --style flat",
+        "render a.mtrk",
+        "render a.mtrk -o a.mp4 --triangles 5",
+        "plan",
+        "plan in.mp4 --parts some",
+        "join -o a.mtrk",
         "info a b",
     ],
 )
@@ -216,6 +225,26 @@ def test_termination_cleans_up(monkeypatch, capsys) -> None:
     assert_one_line(capsys.readouterr(), "terminated")
 
 
+@pytest.mark.parametrize(
+    ("command", "hint"),
+    [
+        (["solve", "a.mp4", "-o", "a.mtrk"], "--resume"),
+        (["animate", "a.mp4", "-o", "b.mp4", "--track", "a.mtrk"], "--resume"),
+        (["animate", "a.mp4", "-o", "b.mp4"], "no unfinished file"),
+        (["render", "a.mtrk", "-o", "b.mp4"], "no unfinished file"),
+    ],
+)
+def test_interruption_tells_what_is_left(command, hint: str, monkeypatch, capsys) -> None:
+    """A track goes on; every other file is whole or not there."""
+
+    def interrupt(arguments) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setitem(cli.COMMANDS, command[0], interrupt)
+    assert main(command) == 130
+    assert_one_line(capsys.readouterr(), "interrupted", hint)
+
+
 def test_reader_that_leaves_is_no_error() -> None:
     """`trimotion ... | head -0` prints no traceback."""
     script = "import sys; from pipeline import cli\n"
@@ -254,7 +283,7 @@ def test_help_lists_options_and_members(capsys) -> None:
     assert "(default: 1500)" in text
 
 
-@pytest.mark.parametrize("command", [[], ["info"], ["measure"]])
+@pytest.mark.parametrize("command", [[], *([name] for name in cli.COMMANDS)])
 def test_help_of_other_commands(command: list[str], capsys) -> None:
     """Help goes to standard output, exit code 0."""
     assert main([*command, "--help"]) == 0

@@ -1,5 +1,6 @@
 """Frames of a video, a still or numbered stills: upright, full-range RGB, times increasing."""
 
+from collections import deque
 from collections.abc import Iterator
 from fractions import Fraction
 from pathlib import Path
@@ -32,6 +33,7 @@ def open_decoder(
     path: str | Path,
     frame_range: FrameRange = WHOLE,
     *,
+    margin: tuple[int, int] = (0, 0),
     max_pixels: int = DEFAULT_MAX_PIXELS,
     threads: int = 0,
     paper: int = WHITE,
@@ -41,6 +43,8 @@ def open_decoder(
     Args:
         path: A video, a still, or a pattern of numbered stills such as `shot_####.png`.
         frame_range: The frames wanted. Stills of a sequence go by the number in their name.
+        margin: Frames given beyond the range before and after it, in its steps, where the source
+            has them.
         max_pixels: Largest picture that is opened [px].
         threads: Decoder threads, 0 for one per core.
         paper: Grey that shows through transparent pixels [code value].
@@ -51,8 +55,8 @@ def open_decoder(
     """
     pattern = input_pattern(path)
     if pattern is not None:
-        return _SequenceDecoder(pattern, frame_range, max_pixels, paper)
-    return _FileDecoder(Path(path), frame_range, max_pixels, threads, paper)
+        return _SequenceDecoder(pattern, frame_range, margin, max_pixels, paper)
+    return _FileDecoder(Path(path), frame_range, margin, max_pixels, threads, paper)
 
 
 class Decoder:
@@ -62,13 +66,19 @@ class Decoder:
     """What the source is."""
 
     def __init__(
-        self, info: MediaInfo, frame_range: FrameRange, source_name: str, paper: int
+        self,
+        info: MediaInfo,
+        frame_range: FrameRange,
+        margin: tuple[int, int],
+        source_name: str,
+        paper: int,
     ) -> None:
         """Prepare the parts that all sources share; use `open_decoder`.
 
         Args:
             info: What the source is.
             frame_range: The frames wanted.
+            margin: Frames given before and after the range.
             source_name: The source, for messages.
             paper: Grey that shows through transparent pixels [code value].
         """
@@ -78,10 +88,12 @@ class Decoder:
         self.notes: list[str] = list(info.notes)
         """Choices that were made, one sentence each."""
         self._range = frame_range
+        self._before, self._after = margin
         self._name = source_name
         self._paper = paper
         self._reader = RgbReader(info.coded_width, info.coded_height, paper)
         self._delivered = 0
+        self._met = False
         self._iterator: Iterator[Frame] | None = None
 
     def __iter__(self) -> Iterator[Frame]:
@@ -140,7 +152,7 @@ class Decoder:
             self.notes.append(note)
 
     def _refuse_nothing(self, available: str) -> None:
-        if self._delivered == 0:
+        if not (self._met and self._delivered):
             raise OptionError(
                 f"frames {self._range} of {self._name}: there are none; the source has {available}"
             )
@@ -150,7 +162,13 @@ class _FileDecoder(Decoder):
     """Frames of one video or still file."""
 
     def __init__(
-        self, path: Path, wanted: FrameRange, max_pixels: int, threads: int, paper: int
+        self,
+        path: Path,
+        wanted: FrameRange,
+        margin: tuple[int, int],
+        max_pixels: int,
+        threads: int,
+        paper: int,
     ) -> None:
         self._source = VideoSource(path, max_pixels, threads)
         try:
@@ -158,7 +176,7 @@ class _FileDecoder(Decoder):
         except BaseException:
             self._source.close()
             raise
-        super().__init__(info, wanted, str(path), paper)
+        super().__init__(info, wanted, margin, str(path), paper)
         self._end = Fraction(0)
 
     def close(self) -> None:
@@ -167,19 +185,28 @@ class _FileDecoder(Decoder):
         self._source.close()
 
     def _frames(self) -> Iterator[Frame]:
-        base = self.info.time_base
+        base, wanted = self.info.time_base, self._range
         repair = TimeRepair(usual_step(self.info.average_rate, base))
-        skipped = seek_to_frame(self._source, self._range.first)
-        index, origin = skipped, self.info.start_time
+        skipped = seek_to_frame(self._source, max(0, wanted.first - self._before * wanted.step))
+        index, origin, past = skipped, self.info.start_time, 0
+        earlier: deque[tuple[int, int, VideoFrame]] = deque(maxlen=self._before)
         for raw in deinterlace(self._source.frames()):
             pts = repair(raw.pts, raw.duration)
             if index == 0:
                 origin = pts * base
             time = pts * base - origin
-            if self._range.is_past(index, time):
+            past += wanted.is_past(index, time)
+            if past > self._after * wanted.step:
                 break
-            if self._range.holds(index, time):
+            if wanted.holds(index, time):
+                self._met = True
+                while earlier:
+                    yield self._to_frame(*earlier.popleft())
                 yield self._to_frame(index, pts, raw)
+            elif past and self._met and wanted.is_in_step(index):
+                yield self._to_frame(index, pts, raw)
+            elif not past and wanted.is_in_step(index):
+                earlier.append((index, pts, raw))
             index += 1
             self._end = pts * base
         self._report(repair.repaired, index)
@@ -216,19 +243,34 @@ class _SequenceDecoder(Decoder):
     """Frames of numbered stills; their index is the number in the name."""
 
     def __init__(
-        self, pattern: NumberedPattern, wanted: FrameRange, max_pixels: int, paper: int
+        self,
+        pattern: NumberedPattern,
+        wanted: FrameRange,
+        margin: tuple[int, int],
+        max_pixels: int,
+        paper: int,
     ) -> None:
         self._pattern = pattern
         self._numbers = existing_numbers(pattern)
         self._max_pixels = max_pixels
         refuse_gaps(pattern, self._numbers, wanted)
         info = describe_sequence(pattern, self._numbers, max_pixels)
-        super().__init__(info, wanted, pattern.text, paper)
+        super().__init__(info, wanted, margin, pattern.text, paper)
 
     def _frames(self) -> Iterator[Frame]:
-        first, base = self._numbers[0], self.info.time_base
-        wanted = [n for n in self._numbers if self._range.holds(n, (n - first) * base)]
-        stills = still_frames(self._pattern, wanted, self._max_pixels, self.warnings)
+        numbers = self._given()
+        self._met = bool(numbers)
+        first = self._numbers[0]
+        stills = still_frames(self._pattern, numbers, self._max_pixels, self.warnings)
         for number, raw in stills:
             yield self._to_frame(number, number - first, raw)
         self._refuse_nothing(f"stills {first} to {self._numbers[-1]}")
+
+    def _given(self) -> list[int]:
+        """Numbers of the range and of its margin."""
+        first, base, wanted = self._numbers[0], self.info.time_base, self._range
+        in_step = [n for n in self._numbers if wanted.is_in_step(n)]
+        held = [p for p, n in enumerate(in_step) if wanted.holds(n, (n - first) * base)]
+        if not held:
+            return []
+        return in_step[max(0, held[0] - self._before) : held[-1] + 1 + self._after]

@@ -102,10 +102,14 @@ class FrameRange:
         """
         return (
             index >= self.first
-            and (index - self.first) % self.step == 0
+            and self.is_in_step(index)
             and not self.is_past(index, time)
             and (self.start_time is None or time >= self.start_time)
         )
+
+    def is_in_step(self, index: int) -> bool:
+        """Whether a frame is one of every `step`, in the range or beyond it."""
+        return (index - self.first) % self.step == 0
 
     def is_past(self, index: int, time: Fraction) -> bool:
         """Whether this frame and all later ones lie behind the range.

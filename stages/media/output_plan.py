@@ -242,4 +242,6 @@ def _is_source(plan: OutputPlan, existing: list[Path], source: MediaInfo) -> boo
     known = {path.resolve() for path in inputs}
     if any(path.resolve() in known for path in existing):
         return True
+    if not inputs or not inputs[0].exists():  # a track is drawn without its source
+        return False
     return any(path.is_file() and path.samefile(inputs[0]) for path in existing[:1])

@@ -1,0 +1,139 @@
+"""From decoded frames to the steps of a solution: cuts found, motion known, range exact.
+
+Whether a shot begins with a frame depends on the source alone, not on the range that is solved:
+the frames around a range are decoded as well and looked at. That is why ranges that begin with a
+shot, solved one by one, are equal to the whole.
+"""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from pathlib import Path
+
+from pipeline.job import Job
+from pipeline.shots import AHEAD, ShotFrame, read_cuts
+from stages.flows import FlowField
+from stages.frame import Frame
+from stages.media import Decoder, FrameRange, MediaInfo, count_frames, open_decoder
+from warp_kernels.errors import MediaError
+
+BEFORE = AHEAD + 2
+"""Frames decoded before the first one that is wanted: as many as a decision about a cut looks
+at, and one more for the deinterlacer."""
+
+
+@dataclass(frozen=True)
+class Reached:
+    """The frame after which a solution goes on."""
+
+    frame: int
+    """Its number in the source."""
+    shot: int
+    """Number of the frame with which its shot begins."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Step:
+    """A frame and the motion that led to it."""
+
+    frame: Frame
+    """The frame."""
+    motion: FlowField | None
+    """Motion from the frame before, or None where a mesh starts anew."""
+    shot: int
+    """Number of the frame with which its shot begins."""
+
+
+def open_around(job: Job, reached: Reached | None) -> Decoder:
+    """Open a source for a range and the frames around it.
+
+    Args:
+        job: Says what is wanted.
+        reached: Where an earlier run ended, or None. Its frame is given again: motion leads from
+            its picture to the next.
+
+    Raises:
+        MediaError: If the source cannot be read.
+    """
+    wanted = job.frame_range
+    if reached is not None and reached.frame >= wanted.first:
+        last = None if wanted.last is None else max(wanted.last, reached.frame)
+        wanted = replace(wanted, first=reached.frame, last=last)
+    return open_decoder(job.source, wanted, margin=(BEFORE, AHEAD))
+
+
+def steps(
+    shot_frames: Iterable[ShotFrame],
+    info: MediaInfo,
+    job: Job,
+    reached: Reached | None,
+    notes: list[str],
+) -> Iterator[Step]:
+    """Estimate the motion between the frames of a shot.
+
+    Args:
+        shot_frames: The frames of the range and around it.
+        info: The source.
+        job: Says what is wanted and how motion is estimated.
+        reached: Where an earlier run ended, or None.
+        notes: Receives a sentence if the range begins inside a shot.
+    """
+    before: Frame | None = None
+    shot = None if reached is None else reached.shot
+    last = None if reached is None else reached.frame
+    for shot_frame in shot_frames:
+        frame = shot_frame.frame
+        if holds(job.frame_range, frame, info) and (reached is None or frame.index > reached.frame):
+            joined = before is not None and before.index == last
+            if not (joined or shot_frame.opens_shot or job.independent):
+                notes.append(_restart(frame.index))
+            if shot is None or shot_frame.opens_shot or not joined:
+                shot = frame.index
+            motion: FlowField | None = None
+            if before is not None and shot != frame.index and not job.independent:
+                motion = job.flow.estimate(before.pixels, frame.pixels)
+            yield Step(frame, motion, shot)
+            last = frame.index
+        before = frame
+
+
+def holds(wanted: FrameRange, frame: Frame, info: MediaInfo) -> bool:
+    """Whether a frame of a source is wanted."""
+    return wanted.holds(frame.index, _time(frame, info))
+
+
+def check_cuts(cuts: str, source: Path, info: MediaInfo) -> None:
+    """Refuse a list of cuts that goes beyond the clip: it is that of another one.
+
+    Args:
+        cuts: `auto`, `none` or the name of a list.
+        source: The source.
+        info: Its properties.
+
+    Raises:
+        MediaError: If the list cannot be read or names frames that there are not.
+    """
+    if cuts in ("auto", "none"):
+        return
+    last = max(read_cuts(Path(cuts)), default=0)
+    if info.frame_count is not None and last < info.frame_count and info.kind != "sequence":
+        return
+    count = count_frames(source)
+    if last >= count:
+        raise MediaError(
+            cuts,
+            f"a cut at frame {last}, and {source} ends with frame {count - 1}",
+            "give the list of this clip, or remove the cuts beyond its end",
+        )
+
+
+def _time(frame: Frame, info: MediaInfo) -> Fraction:
+    """When a frame is shown [s from the source's first frame]."""
+    return frame.pts * frame.time_base - info.start_time
+
+
+def _restart(frame: int) -> str:
+    return (
+        f"frame {frame} is inside a shot, and a new mesh starts with it: to go on seamlessly "
+        "solve whole shots (trimotion plan), or the frames before it and then --resume"
+    )

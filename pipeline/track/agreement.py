@@ -1,0 +1,52 @@
+"""Which options two jobs do not share, of those that decide what is solved."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from pipeline.options import Option, job_options
+from pipeline.plain_values import CLASS
+
+FREE = frozenset({"source", "output", "frame_range", "device", "threads", "encode"})
+"""Fields of a job that do not change what a frame becomes; those of looks, files and processes
+do not either. The source is compared by its content."""
+FREE_GROUPS = frozenset({"look", "output", "processes"})
+"""Headings of the options that do not change what a frame becomes."""
+
+
+def differing_flags(mine: Mapping[str, Any], theirs: Mapping[str, Any]) -> list[str]:
+    """The options that differ, such as `--triangles 90 instead of 120`.
+
+    Args:
+        mine: A job's options as plain values: what is right.
+        theirs: Another's.
+    """
+    options = {option.dest: option for option in job_options()}
+    free = {name for name, option in options.items() if option.group in FREE_GROUPS} | FREE
+    kept = [{k: v for k, v in job.items() if k not in free} for job in (mine, theirs)]
+    return list(_differing(kept[0], kept[1], options))
+
+
+def _differing(
+    mine: Mapping[str, Any], theirs: Mapping[str, Any], options: Mapping[str, Option]
+) -> Iterator[str]:
+    for name in {**mine, **theirs}:
+        one, other = mine.get(name), theirs.get(name)
+        if one == other:
+            continue
+        option = options.get(name)
+        if option is None and isinstance(one, Mapping) and isinstance(other, Mapping):
+            yield from _differing(one, other, options)
+        else:
+            flag = f"--{option.flag}" if option is not None else name
+            yield f"{flag} {_shown(other)} instead of {_shown(one)}"
+
+
+def _shown(value: Any) -> str:
+    """A value as short as a message needs it."""
+    if isinstance(value, Mapping) and CLASS in value:
+        pairs = (f"{key}={_shown(entry)}" for key, entry in value.items() if key != CLASS)
+        return ":".join(filter(None, (str(value[CLASS]).lower(), ",".join(pairs))))
+    if isinstance(value, Mapping):
+        return "(a picture)"
+    text = "none" if value is None else str(value)
+    return text if len(text) <= 40 else f"{text[:37]}..."

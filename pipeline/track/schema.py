@@ -1,0 +1,214 @@
+"""The form of a track's file.
+
+One row per frame in `frames`, small, so that listing ten thousand of them is quick; what they
+hold in `meshes`. A topology is stored with the frame that brought it and with the first frame of
+every shot; the frames after it refer to it. All that the next frame depends on is stored to the
+bit: a job that goes on from a row gives what an uninterrupted one gives.
+
+Blobs are little-endian arrays, packed as `blobs` tells:
+
+    meshes      vertices [V, 2] float64 (px), coefficients [T, 3, K] float64, energies [T] float64,
+                counts [T] int64
+    topologies  triangles [T, 3] int32, vertex_ids [V] int64, triangle_ids [T] int64
+"""
+
+import sqlite3
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from stages.media.commit import PendingFile, output_error
+from warp_kernels.errors import OutputError, TrackError
+
+MAGIC = b"SQLite format 3\0"
+"""How every file of SQLite begins."""
+APPLICATION = 0x74726D6F
+"""What marks a file of SQLite as a track ("trmo")."""
+FORMAT = 1
+"""Number of this form; another program reads a track only if it is the same."""
+ENDING = ".mtrk"
+"""How the names of tracks end."""
+WAIT = 10.0
+"""How long to wait for another process that writes [s]."""
+
+SCHEMA = """
+CREATE TABLE header (key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
+CREATE TABLE frames (
+    frame INTEGER PRIMARY KEY,
+    pts INTEGER NOT NULL,
+    shot INTEGER NOT NULL,
+    topology INTEGER NOT NULL,
+    vertex_count INTEGER NOT NULL,
+    triangle_count INTEGER NOT NULL,
+    next_vertex_id INTEGER NOT NULL,
+    next_triangle_id INTEGER NOT NULL,
+    rmse REAL NOT NULL
+);
+CREATE TABLE meshes (
+    frame INTEGER PRIMARY KEY,
+    vertices BLOB NOT NULL,
+    coefficients BLOB NOT NULL,
+    energies BLOB NOT NULL,
+    counts BLOB NOT NULL
+);
+CREATE TABLE topologies (
+    frame INTEGER PRIMARY KEY,
+    triangles BLOB NOT NULL,
+    vertex_ids BLOB NOT NULL,
+    triangle_ids BLOB NOT NULL
+);
+"""
+
+TABLES = ("frames", "meshes", "topologies")
+"""The tables whose rows belong to frames, `frame` first."""
+
+
+def create(path: Path) -> sqlite3.Connection:
+    """Make an empty track.
+
+    Args:
+        path: Its file, which must not exist.
+
+    Raises:
+        OutputError: If it cannot be made.
+    """
+    with writing(path):
+        connection = _connect(path, "rwc")
+        connection.executescript(
+            f"PRAGMA application_id = {APPLICATION}; PRAGMA user_version = {FORMAT};"
+            "PRAGMA synchronous = NORMAL;"
+            f"BEGIN; {SCHEMA} COMMIT;"
+        )
+    return connection
+
+
+def put_in_place(pending: PendingFile) -> None:
+    """Give a track its name, in place of what stands there.
+
+    Args:
+        pending: The track, closed.
+
+    Raises:
+        OutputError: If the disk or the folder refuses.
+    """
+    target = pending.target
+    try:
+        # What a killed run left beside an old track must not be taken for the new one's.
+        target.with_name(f"{target.name}-journal").unlink(missing_ok=True)
+    except OSError as error:
+        pending.discard()
+        raise output_error(target, error) from error
+    pending.commit()
+
+
+def open_existing(path: Path) -> sqlite3.Connection:
+    """Open a track, and undo what a killed run left half-written in it.
+
+    Args:
+        path: Its file.
+
+    Raises:
+        TrackError: If it is no whole track of this form.
+    """
+    _check_file(path)
+    with reading(path):
+        connection = _connect(path, "rw")
+        try:
+            connection.execute("PRAGMA synchronous = NORMAL")
+            connection.execute("SELECT COUNT(*) FROM sqlite_master").fetchone()
+            _check_form(path, connection)
+        except sqlite3.Error:
+            connection.close()
+            _check_length(path)
+            raise
+        except BaseException:
+            connection.close()
+            raise
+    return connection
+
+
+@contextmanager
+def reading(path: Path) -> Iterator[None]:
+    """Turn whatever a damaged track causes into one line.
+
+    Args:
+        path: Its file.
+    """
+    try:
+        yield
+    except sqlite3.Error as error:
+        raise TrackError(
+            f"{path}: the track is damaged ({error}); take a copy of it, or solve again"
+        ) from error
+
+
+@contextmanager
+def writing(path: Path) -> Iterator[None]:
+    """Turn what hinders writing into one line.
+
+    Args:
+        path: The track's file.
+    """
+    try:
+        yield
+    except sqlite3.IntegrityError as error:
+        raise OutputError(
+            path, f"holds this frame already ({error})", "let one run at a time write to a track"
+        ) from error
+    except sqlite3.Error as error:
+        raise OutputError(
+            path,
+            f"the track cannot be written ({error})",
+            "check the folder, its rights, the free space and whether another run writes to it",
+        ) from error
+
+
+def _connect(path: Path, mode: str) -> sqlite3.Connection:
+    # A rollback journal, not a write-ahead log: the latter needs memory that processes share,
+    # which folders on a network do not have, and a second file beside the track.
+    address = f"{path.absolute().as_uri()}?mode={mode}"
+    return sqlite3.connect(
+        address, uri=True, timeout=WAIT, isolation_level=None, check_same_thread=False
+    )
+
+
+def _check_file(path: Path) -> None:
+    """Refuse what is no file of SQLite."""
+    try:
+        with path.open("rb") as file:
+            head = file.read(100)
+    except OSError as error:
+        reason = str(error.strerror or error).lower()
+        raise TrackError(f"{path}: cannot be read ({reason}); give the name of a track") from error
+    if len(head) < 100 or not head.startswith(MAGIC):
+        raise TrackError(f"{path}: is no mesh track; give a file that trimotion solve wrote")
+
+
+def _check_length(path: Path) -> None:
+    """Tell what is wrong with the beginning of a file.
+
+    Only after SQLite has found fault with it: a file that a killed run leaves may be short as
+    well, until SQLite mends it by its journal.
+    """
+    with path.open("rb") as file:
+        content = file.read(100)
+    size = path.stat().st_size
+    page = int.from_bytes(content[16:18], "big")
+    declared = (65536 if page == 1 else page) * int.from_bytes(content[28:32], "big")
+    if size < declared:
+        raise TrackError(
+            f"{path}: is cut off ({size} of {declared} bytes); copy it again, or solve again"
+        )
+
+
+def _check_form(path: Path, connection: sqlite3.Connection) -> None:
+    """Refuse files of other programs and of other versions."""
+    (application,) = connection.execute("PRAGMA application_id").fetchone()
+    if application != APPLICATION:
+        raise TrackError(f"{path}: is no mesh track; give a file that trimotion solve wrote")
+    (form,) = connection.execute("PRAGMA user_version").fetchone()
+    if form != FORMAT:
+        raise TrackError(
+            f"{path}: is a track of format {form}, and this program reads format {FORMAT}; "
+            "use the version that made it, or solve again"
+        )

@@ -1,0 +1,154 @@
+"""Write a track while it is made; every frame is there to stay once it is written."""
+
+import sqlite3
+from contextlib import closing
+from dataclasses import replace
+from pathlib import Path
+from types import TracebackType
+
+import numpy as np
+
+from pipeline.track.blobs import pack
+from pipeline.track.header import Header, write_header
+from pipeline.track.schema import create, open_existing, put_in_place, writing
+from stages.media.commit import PendingFile
+from stages.mesh import Mesh
+from stages.snapshot import Snapshot
+
+
+class TrackWriter:
+    """Appends frames to a track; a context manager.
+
+    Each frame is one transaction: whatever ends the run, the track holds all frames up to the
+    last one that was written, and can be read and continued. Without a frame there is no file.
+    """
+
+    def __init__(self, path: Path, header: Header) -> None:
+        """Begin a track with its first frame, in place of what stands there by then.
+
+        Args:
+            path: Its file.
+            header: How it is made.
+        """
+        self._path = path
+        self._header = replace(header, finished=False)
+        self._connection: sqlite3.Connection | None = None
+        self._topology: Mesh | None = None
+        self._shot = -1
+        self._holder = -1
+
+    @classmethod
+    def resume(cls, path: Path, header: Header, last: Snapshot, shot: int) -> "TrackWriter":
+        """Go on with a track.
+
+        Args:
+            path: Its file.
+            header: How it is made, from now on.
+            last: Its last snapshot.
+            shot: The shot of that.
+
+        Raises:
+            TrackError: If it cannot be read.
+            OutputError: If it cannot be written.
+        """
+        writer = cls(path, header)
+        writer._connection = open_existing(path)
+        with writing(path):
+            write_header(writer._connection, writer._header)
+            (writer._holder,) = writer._connection.execute(
+                "SELECT topology FROM frames WHERE frame = ?", (last.frame_index,)
+            ).fetchone()
+        writer._topology, writer._shot = last.mesh, shot
+        return writer
+
+    def _opened(self) -> sqlite3.Connection:
+        """The file, made when the first frame comes: before that nothing is replaced."""
+        if self._connection is None:
+            pending = PendingFile(self._path)
+            try:
+                with writing(self._path), closing(create(pending.path)) as connection:
+                    write_header(connection, self._header)
+            except BaseException:
+                pending.discard()
+                raise
+            put_in_place(pending)
+            self._connection = open_existing(self._path)
+        return self._connection
+
+    def write(self, snapshot: Snapshot, shot: int) -> None:
+        """Append a frame, for good.
+
+        Args:
+            snapshot: What the frame became.
+            shot: Number of the frame with which its shot begins.
+
+        Raises:
+            OutputError: If it cannot be written.
+        """
+        mesh, frame = snapshot.mesh, snapshot.frame_index
+        brings = shot != self._shot or not _same_topology(self._topology, mesh)
+        if brings:
+            self._holder = frame
+        row: tuple[object, ...] = (
+            *(frame, snapshot.pts, shot, self._holder, mesh.vertex_count, mesh.triangle_count),
+            *(mesh.next_vertex_id, mesh.next_triangle_id, snapshot.rmse),
+        )
+        arrays = (
+            pack(mesh.vertices, "<f8"),
+            pack(snapshot.coefficients, "<f8"),
+            pack(snapshot.energies, "<f8"),
+            pack(snapshot.counts, "<i8"),
+        )
+        rows: dict[str, tuple[object, ...]] = {"frames": row, "meshes": (frame, *arrays)}
+        if brings:
+            rows["topologies"] = (frame, *_packed_topology(mesh))
+        connection = self._opened()
+        with writing(self._path):
+            connection.execute("BEGIN IMMEDIATE")
+            for table, values in rows.items():
+                places = ", ".join("?" * len(values))
+                connection.execute(f"INSERT INTO {table} VALUES ({places})", values)
+            connection.execute("COMMIT")
+        self._topology, self._shot = mesh, shot
+
+    def finish(self) -> None:
+        """Note that the whole range is there.
+
+        Raises:
+            OutputError: If it cannot be written.
+        """
+        if self._connection is not None:
+            with writing(self._path):
+                write_header(self._connection, replace(self._header, finished=True))
+
+    def __enter__(self) -> "TrackWriter":
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        if self._connection is not None:
+            self._connection.close()
+
+
+def _same_topology(before: Mesh | None, mesh: Mesh) -> bool:
+    """Whether two meshes have the same triangles of the same numbers in the same order."""
+    if before is None:
+        return False
+    pairs = (
+        (before.triangles, mesh.triangles),
+        (before.vertex_ids, mesh.vertex_ids),
+        (before.triangle_ids, mesh.triangle_ids),
+    )
+    return all(one is other or np.array_equal(one, other) for one, other in pairs)
+
+
+def _packed_topology(mesh: Mesh) -> tuple[bytes, ...]:
+    return (
+        pack(mesh.triangles, "<i4"),
+        pack(mesh.vertex_ids, "<i8"),
+        pack(mesh.triangle_ids, "<i8"),
+    )

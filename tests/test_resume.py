@@ -1,0 +1,241 @@
+"""Ranges are exact: killed, resumed, split or solved side by side, a track has the same bits."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from pipeline.animate import animate
+from pipeline.cli import main
+from pipeline.job import Job
+from pipeline.parts import solve_in_parts
+from pipeline.plan import plan
+from pipeline.progress import Progress
+from pipeline.track import TrackReader, join
+from stages.media import FrameRange
+from tests import media_samples as samples
+from tests.tracks import COUNT, CUT, QUICK, QUICK_FLAGS, rows_of, solve_to, write_clip
+
+ROOT = Path(__file__).parents[1]
+KILL = """
+import os, signal, sys
+from pathlib import Path
+from pipeline.progress import Progress
+from tests.tracks import solve_to
+
+class Deadly(Progress):
+    def frame(self, done, total, triangles, rmse):
+        if done == 9:
+            os.kill(os.getpid(), signal.SIGKILL)
+
+solve_to(Path(sys.argv[2]), Path(sys.argv[1]), progress=Deadly())
+"""
+
+
+@pytest.fixture(scope="module")
+def clip(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The clip."""
+    return write_clip(tmp_path_factory.mktemp("resume") / "in.mp4")
+
+
+@pytest.fixture(scope="module")
+def whole(clip: Path) -> Path:
+    """The track of the whole clip, made at once."""
+    track = clip.with_name("whole.mtrk")
+    solve_to(track, clip)
+    return track
+
+
+class Interrupting(Progress):
+    """Ctrl-C after some frames."""
+
+    def __init__(self, after: int) -> None:
+        super().__init__()
+        self.after = after
+
+    def frame(self, done: int, total: int | None, triangles: int, rmse: float) -> None:
+        """Interrupt at the frame."""
+        if done == self.after:
+            raise KeyboardInterrupt
+
+
+def test_rows_tell_frames_and_shots(whole: Path) -> None:
+    """One row a frame, the cut where it is, topologies stored only where they change."""
+    rows = rows_of(whole)
+    assert [row[0] for row in rows["frames"]] == list(range(COUNT))
+    assert [row[2] for row in rows["frames"]] == [0] * CUT + [CUT] * (COUNT - CUT)
+    brought = [row[0] for row in rows["topologies"]]
+    assert {0, CUT} <= set(brought)
+    assert [row[3] for row in rows["frames"]] == [
+        max(frame for frame in brought if frame <= number) for number in range(COUNT)
+    ]
+
+
+@pytest.mark.parametrize(
+    ("last", "from_start"),
+    [(0, True), (3, False), (CUT - 1, False), (CUT, True), (CUT + 1, False), (COUNT - 1, True)],
+)
+def test_two_ranges_are_the_whole(
+    last: int, from_start: bool, clip: Path, whole: Path, tmp_path: Path
+) -> None:
+    """A track goes on to the same bits wherever it ended: also around a cut."""
+    track = tmp_path / "t.mtrk"
+    assert solve_to(track, clip, f"0-{last}").frames == last + 1
+    more = "0-" if from_start else f"{min(last + 1, COUNT - 1)}-{COUNT - 1}"
+    again = solve_to(track, clip, more, resume=True)
+    assert again.frames == COUNT - 1 - last
+    assert rows_of(track) == rows_of(whole)
+    with TrackReader(track) as reader:
+        assert reader.header.finished
+
+
+def test_other_threads_resume_to_the_same_bits(clip: Path, whole: Path, tmp_path: Path) -> None:
+    """What does not change the result may change: threads, names, where the source lies."""
+    moved = tmp_path / "moved.mp4"
+    moved.write_bytes(clip.read_bytes())
+    solve_to(tmp_path / "t.mtrk", clip, "0-4", threads=1)
+    solve_to(tmp_path / "t.mtrk", moved, resume=True, threads=2)
+    assert rows_of(tmp_path / "t.mtrk") == rows_of(whole)
+
+
+def test_steps_and_times_resume(clip: Path, tmp_path: Path) -> None:
+    """Every second frame, and a range that is bounded by times."""
+    for name, frames in (("a", "1-"), ("b", "1-5")):
+        solve_to(tmp_path / f"{name}.mtrk", clip, f"{frames}x2")
+    solve_to(tmp_path / "b.mtrk", clip, "1-x2", resume=True)
+    assert rows_of(tmp_path / "a.mtrk") == rows_of(tmp_path / "b.mtrk")
+    assert [row[2] for row in rows_of(tmp_path / "a.mtrk")["frames"]] == [1, 1, 1, 7, 7, 7]
+    times = ["--start", "0.16", "--end", "0.36", *QUICK_FLAGS, "--progress", "none"]
+    solve_to(tmp_path / "c.mtrk", clip, "4-9")
+    assert main(["solve", str(clip), "-o", str(tmp_path / "d.mtrk"), *times]) == 0
+    assert rows_of(tmp_path / "c.mtrk") == rows_of(tmp_path / "d.mtrk")
+
+
+def test_sequence_resumes(tmp_path: Path) -> None:
+    """Numbered stills, with a gap before the range."""
+    for number in (1, 5, 6, 7, 8):
+        samples.write_still(tmp_path / f"s_{number}.png", samples.picture(64, 48, number))
+    for name, frames in (("a", "5-8"), ("b", "5-6")):
+        solve_to(tmp_path / f"{name}.mtrk", tmp_path / "s_#.png", frames)
+    solve_to(tmp_path / "b.mtrk", tmp_path / "s_#.png", "7-8", resume=True)
+    assert rows_of(tmp_path / "a.mtrk") == rows_of(tmp_path / "b.mtrk")
+
+
+def test_interrupted_job_goes_on(clip: Path, whole: Path, tmp_path: Path) -> None:
+    """An exception in the middle leaves a track that reads and continues."""
+    track = tmp_path / "t.mtrk"
+    with pytest.raises(KeyboardInterrupt):
+        solve_to(track, clip, progress=Interrupting(8))
+    with TrackReader(track) as reader:
+        assert not reader.header.finished
+        assert 1 <= len(reader.rows) <= 8
+        assert reader.snapshot(len(reader.rows) - 1).rmse > 0
+    solve_to(track, clip, resume=True)
+    assert rows_of(track) == rows_of(whole)
+
+
+def test_killed_process_goes_on(clip: Path, whole: Path, tmp_path: Path) -> None:
+    """SIGKILL while frames are solved, stored and drawn."""
+    track = tmp_path / "t.mtrk"
+    run = subprocess.run([sys.executable, "-c", KILL, str(clip), str(track)], cwd=ROOT, check=False)
+    assert run.returncode == -9
+    with TrackReader(track) as reader:
+        assert 1 <= len(reader.rows) < COUNT
+    solve_to(track, clip, resume=True)
+    assert rows_of(track) == rows_of(whole)
+
+
+def test_range_inside_a_shot_says_so(clip: Path, tmp_path: Path) -> None:
+    """A new mesh starts with it; a range that begins at a cut needs no word."""
+    inside = solve_to(tmp_path / "a.mtrk", clip, "3-4")
+    assert any("frame 3 is inside a shot" in note for note in inside.notes)
+    at_cut = solve_to(tmp_path / "b.mtrk", clip, f"{CUT}-{CUT + 1}")
+    assert not any("inside" in note for note in at_cut.notes)
+
+
+def test_plan_follows_the_shots(clip: Path, capsys) -> None:
+    """Ranges begin with shots, wherever the wanted frames begin."""
+    job = Job(clip, clip)
+    assert plan(job).as_lines() == f"0-{CUT - 1}\n{CUT}-{COUNT - 1}"
+    assert plan(job, 1).as_lines() == f"0-{COUNT - 1}"
+    assert plan(job, 9).as_lines() == plan(job).as_lines()
+    part = Job(clip, clip, frame_range=FrameRange(CUT - 1, CUT + 2))
+    assert plan(part).as_lines() == f"{CUT - 1}-{CUT - 1}\n{CUT}-{CUT + 2}"
+    stepped = Job(clip, clip, frame_range=FrameRange(1, None, 4))
+    assert plan(stepped).as_lines() == "1-5x4\n9-9x4"
+    assert main(["plan", str(clip), "--cuts", "none"]) == 0
+    assert capsys.readouterr().out == f"0-{COUNT - 1}\n"
+
+
+def test_joined_parts_are_the_whole(clip: Path, whole: Path, tmp_path: Path) -> None:
+    """The ranges of a plan, solved apart, in any order."""
+    parts = []
+    for number, part in enumerate(plan(Job(clip, clip)).ranges):
+        parts.append(tmp_path / f"{number}.mtrk")
+        solve_to(parts[-1], clip, str(part))
+    join(parts[::-1], tmp_path / "joined.mtrk")
+    assert rows_of(tmp_path / "joined.mtrk") == rows_of(whole)
+    with TrackReader(tmp_path / "joined.mtrk") as reader:
+        assert reader.header.finished
+        assert reader.header.frame_range.is_whole  # so that it is drawn with all of the sound
+
+
+def test_two_processes_are_one(clip: Path, whole: Path, tmp_path: Path) -> None:
+    """Shots solved side by side; nothing is left beside the track."""
+    track = tmp_path / "t.mtrk"
+    job = Job(clip, track, track=track, triangulate=QUICK, jobs=2, threads=1)
+    assert solve_in_parts(job, Progress()).frames == COUNT
+    assert rows_of(track) == rows_of(whole)
+    assert list(tmp_path.iterdir()) == [track]
+
+
+def test_animate_goes_on_with_its_track(clip: Path, tmp_path: Path) -> None:
+    """The output of a resumed job is that of one that was not interrupted, frame for frame."""
+    jobs = []
+    for name in ("a", "b"):
+        out = tmp_path / f"{name}_##.png"
+        part = FrameRange(4, 9)
+        jobs.append(Job(clip, out, part, track=tmp_path / f"{name}.mtrk", triangulate=QUICK))
+    animate(jobs[0], Progress())
+    with pytest.raises(KeyboardInterrupt):
+        animate(jobs[1], Interrupting(4))
+    flags = [
+        "--frames",
+        "4-9",
+        "--track",
+        str(jobs[1].track),
+        "--resume",
+        *QUICK_FLAGS,
+        "--progress",
+        "none",
+    ]
+    assert main(["animate", str(clip), "-o", str(jobs[1].output), *flags]) == 0
+    assert rows_of(jobs[0].track) == rows_of(jobs[1].track)
+    for number in range(4, 10):
+        names = (tmp_path / f"{name}_{number:02d}.png" for name in ("a", "b"))
+        assert len({name.read_bytes() for name in names}) == 1
+
+
+def test_half_written_frame_is_undone(clip: Path, tmp_path: Path) -> None:
+    """The power fails in the middle of a write: the journal beside the track mends it."""
+    track, later = tmp_path / "t.mtrk", tmp_path / "later.mtrk"
+    solve_to(track, clip, "0-7")
+    before = rows_of(track)
+    script = (
+        "import os, sqlite3, sys\n"
+        "c = sqlite3.connect(sys.argv[1], isolation_level=None)\n"
+        "c.execute('PRAGMA cache_size = 1')\n"
+        "c.execute('BEGIN IMMEDIATE')\n"
+        "c.execute('UPDATE meshes SET vertices = zeroblob(90000)')\n"
+        "os.kill(os.getpid(), 9)\n"
+    )
+    subprocess.run([sys.executable, "-c", script, str(track)], check=False)
+    assert track.with_name("t.mtrk-journal").stat().st_size > 0
+    with TrackReader(track) as reader:
+        assert len(reader.rows) == 8
+    assert rows_of(track) == before
+    later.with_name("later.mtrk-journal").write_bytes(b"of an old track")
+    solve_to(later, clip, "0-2")
+    with TrackReader(later) as reader:
+        assert reader.snapshot(2).rmse > 0

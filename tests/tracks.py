@@ -1,0 +1,45 @@
+"""A small clip of two shots and what is compared of tracks made from it."""
+
+import sqlite3
+from contextlib import closing
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from pipeline.animate import Animated, solve
+from pipeline.job import Job
+from pipeline.progress import Progress
+from pipeline.track.schema import TABLES
+from stages.media import FrameRange
+from stages.refine import RefineOptions
+from stages.triangulate import TriangulateOptions
+from tests import media_samples as samples
+
+CUT, COUNT = 6, 12
+"""First frame of the second shot, and number of frames."""
+QUICK = TriangulateOptions(iterations=8, frame_iterations=4, refine=RefineOptions(triangles=40))
+QUICK_FLAGS = ("--iterations", "8", "--frame-iterations", "4", "--triangles", "40")
+
+
+def write_clip(path: Path) -> Path:
+    """A moving square, then its negative upside down; 96 x 64, with sound."""
+    first = [samples.picture(96, 64, number) for number in range(CUT)]
+    second = [255 - samples.picture(96, 64, number)[::-1] for number in range(COUNT - CUT)]
+    return samples.write_video(path, first + second, sound=1)
+
+
+def solve_to(
+    track: Path, clip: Path, frames: str = "0-", progress: Progress | None = None, **options: Any
+) -> Animated:
+    """Solve a range of a clip to a track."""
+    job = Job(clip, track, track=track, frame_range=FrameRange.parse(frames), triangulate=QUICK)
+    return solve(replace(job, **options), progress or Progress())
+
+
+def rows_of(track: Path) -> dict[str, list[tuple]]:
+    """All rows of all frames, blobs included; by a path of its own, without the reader."""
+    with closing(sqlite3.connect(track)) as connection:
+        return {
+            table: connection.execute(f"SELECT * FROM {table} ORDER BY frame").fetchall()
+            for table in TABLES
+        }
