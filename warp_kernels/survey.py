@@ -82,12 +82,13 @@ class Survey:
             energies=workspace.fit_energies,
             table=workspace.table,
             powers=workspace.powers,
+            gauge=workspace.gauge,
             changes_out=self._changes,
         )
         limits = {"height": workspace.size[1], "least_height": self._least_height}
-        device, model = workspace.device, workspace.model
+        device, layout = workspace.device, workspace.layout
         if change == "flip":
-            return record_flip_gains(device, model, arrays, **limits)
+            return record_flip_gains(device, layout, arrays, **limits)
         if change == "split":
-            return record_split_gains(device, model, arrays, share=0.5, **limits)
-        return record_collapse_costs(device, model, arrays, **limits)
+            return record_split_gains(device, layout, arrays, share=0.5, **limits)
+        return record_collapse_costs(device, layout, arrays, **limits)
