@@ -6,7 +6,7 @@ from fractions import Fraction
 import numpy as np
 
 from tests.oracles.coverage import Pixel
-from warp_kernels.color_model import ColorModel
+from warp_kernels.color_model import CHANNELS, ColorModel
 
 
 def best_fit(
@@ -44,12 +44,44 @@ def best_fit(
     return fitted, 0.5 * float((weight[:, None] * (colors - fitted) ** 2).sum())  # Eq. 4
 
 
+def exact_energy(
+    picture: np.ndarray, pixels: Sequence[Pixel], model: ColorModel, weights: np.ndarray | None
+) -> float:
+    """The least E of Eq. 4 in rational arithmetic; the matrix must be regular.
+
+    Eliminating from Eq. 15 bordered by its right-hand side and the sum of I^2 leaves the residual.
+
+    Args:
+        picture: Code values, [H, W, 3] uint8.
+        pixels: The pixels covered.
+        model: The polynomial colour.
+        weights: How much each pixel counts, [H, W]; None for 1.
+    """
+    (x0, y0), total = pixels[0], Fraction(0)
+    factors = [1 if weights is None else int(weights[y, x]) for x, y in pixels]
+    for channel in range(CHANNELS):
+        terms = np.array(
+            [
+                *([(x - x0) ** a * (y - y0) ** b for x, y in pixels] for a, b in model.exponents),
+                [int(picture[y, x, channel]) for x, y in pixels],
+            ],
+            dtype=object,
+        )
+        bordered = [[Fraction(int(v)) for v in row] for row in (terms * factors) @ terms.T]
+        for n in range(model.term_count):
+            assert _eliminate(bordered, n) > 0
+        total += bordered[-1][-1]
+    return float(total / 2)
+
+
 def is_singular(pixels: Sequence[Pixel], degree: int) -> bool:
     """Say whether the matrix of Eq. 15 has no inverse; exact.
 
     With a linear colour that is the case when all pixels lie on a line, with a quadratic one when
     they lie on a conic, and always when there are fewer pixels than terms.
     """
+    if len(pixels) < len(ColorModel("", degree).exponents):
+        return True
     matrix = normal_matrix(pixels, degree)
     return any(_eliminate(matrix, n) == 0 for n in range(len(matrix)))
 
