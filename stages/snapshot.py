@@ -27,16 +27,17 @@ class Snapshot:
     """Per triangle and channel the coefficients of x^a y^b, x and y positions in the picture,
     in the order of `model.exponents` [code value / px^(a + b)], shape [T, 3, K] float64."""
     energies: np.ndarray
-    """E(T) of Eq. 4 [code value^2 px], shape [T] float64."""
+    """E(T) of Eq. 4 [code value^2 px], shape [T] float64; where pixels have weights, these divided
+    by their mean over the picture are factors of the errors."""
     counts: np.ndarray
-    """Pixels covered, shape [T] int64."""
+    """Pixels covered, or the sum of their weights up to a common factor, shape [T] int64."""
 
     @property
     def rmse(self) -> float:
         """Root mean square error over pixels and channels [code values].
 
         The colours are clipped to 0..255 only when they are drawn, so this is the error of the
-        fit; Eq. 12's R is sqrt(3 / 2) of it.
+        fit; Eq. 12's R is sqrt(3 / 2) of it. Where pixels have weights the mean is weighted.
         """
         samples = CHANNELS * self.mesh.width * self.mesh.height
         return float(np.sqrt(2.0 * self.energies.sum() / samples))

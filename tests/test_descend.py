@@ -7,9 +7,9 @@ import pytest
 
 from stages.mesh import Mesh, mesh_of
 from stages.validate import assert_valid
-from tests.kernel_samples import noise, poisoned_workspace, random_mesh, waves
+from tests.kernel_samples import noise, poisoned_workspace, random_mesh, random_weights, waves
 from tests.oracles.gradient import umbrella_gradient, vertex_gradient
-from warp_kernels.color_model import COLOR_MODELS, CONSTANT, LINEAR, ColorModel
+from warp_kernels.color_model import COLOR_MODELS, CONSTANT, LINEAR, QUADRATIC, ColorModel
 from warp_kernels.device import Device
 
 DIRECTION_TOLERANCE = 1e-9
@@ -128,12 +128,14 @@ def test_same_bits_on_any_number_of_threads(model: ColorModel, sums: str, device
         np.testing.assert_array_equal(other, results[0])
 
 
-def test_both_sums_move_vertices_alike(device: str) -> None:
+@pytest.mark.parametrize(("model", "weighted"), [(LINEAR, False), (QUADRATIC, True)])
+def test_both_sums_move_vertices_alike(model: ColorModel, weighted: bool, device: str) -> None:
     """Equal integers give equal steps: `edges` and `fragments` end at the same bits."""
     picture, mesh = noise(WIDTH, HEIGHT), random_mesh(WIDTH, HEIGHT, 50)
+    weights = random_weights(WIDTH, HEIGHT) if weighted else None
     ends = []
     for sums in ("edges", "fragments"):
-        workspace = poisoned_workspace(Device(device), picture, mesh, LINEAR, sums)
+        workspace = poisoned_workspace(Device(device), picture, mesh, model, sums, weights)
         workspace.iterate(25, trust=0.5, regularity=1e-3)
         ends.append(workspace.vertices())
     np.testing.assert_array_equal(*ends)

@@ -3,9 +3,9 @@
 Entry (row, column, power) is the 4-vector of the sums over all pixels left of `column` in `row`
 of x^power I for red, green and blue; the fourth component holds the sum of I^2 for power 0 and
 nothing otherwise. In the wide layout all of these are weighted, and the components that are left
-hold the sums of w x^a, see `MomentLayout.area_words`. The table is one flat array of blocks of `BLOCK_ROWS` rows. Within a block the
-entries of one column follow each other: an edge that runs down finds several rows in one cache
-line and in one page of memory.
+hold the sums of w x^a, see `MomentLayout.area_words`. The table is one flat array of blocks of
+`BLOCK_ROWS` rows. Within a block the entries of one column follow each other: an edge that runs
+down finds several rows in one cache line and in one page of memory.
 """
 
 from functools import cache

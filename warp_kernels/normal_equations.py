@@ -15,7 +15,8 @@ from warp_kernels.moment_layout import MomentLayout, moment_types
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 
 SINGULAR = 1e-9
-"""A pivot this small beside its diagonal entry makes the matrix singular: a lower degree is used."""
+"""A pivot this small beside its diagonal entry makes the matrix singular: a lower degree is
+used."""
 
 
 @cache

@@ -81,9 +81,7 @@ def color_settler(layout: MomentLayout) -> Any:
     power_of_row = row_powers(integer)
 
     @wp.func
-    def settle_color(
-        sums: color_type, end: integer, sign: integer, nothing: integer
-    ) -> color_type:
+    def settle_color(sums: color_type, end: integer, sign: integer, nothing: integer) -> color_type:
         """Colour moments; `nothing` is 0, but the compiler must not know.
 
         It would leave out the unused fourth components and add the other three one by one.
