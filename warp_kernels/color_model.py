@@ -50,11 +50,6 @@ class ColorModel:
         """Number of moments that depend on the covered area alone; the first is the count."""
         return len(self.area_exponents)
 
-    @property
-    def term_counts(self) -> tuple[int, ...]:
-        """Number of terms of the models of degree 0, 1, ... up to this one's."""
-        return tuple(len(_monomials(degree)) for degree in range(self.degree + 1))
-
     def term(self, a: int, b: int) -> int:
         """Index of the term x^a y^b."""
         return self.exponents.index((a, b))
