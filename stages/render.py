@@ -43,22 +43,42 @@ class Renderer:
             Code values, [rows, columns, 3] uint8.
         """
         mesh = snapshot.mesh
-        centres = mesh.vertices[mesh.triangles].mean(axis=1)
-        colors = colors_at_centres(mesh, snapshot.model, snapshot.coefficients)
+        colors, gradients, curvatures = _expanded(snapshot)
         return self._canvas.draw(
             vertices=mesh.vertices,
             triangles=mesh.triangles,
             edges=mesh.edge_vertices,
             colors=np.clip(colors, 0.0, 255.0),
-            gradients=_gradients(snapshot),
-            centres=centres,
+            gradients=gradients,
+            curvatures=curvatures,
+            centres=mesh.vertices[mesh.triangles].mean(axis=1),
         )
 
 
-def _gradients(snapshot: Snapshot) -> np.ndarray:
-    """Linear part of the colours [code values / px], [T, 2, 3]."""
-    coefficients, model = snapshot.coefficients, snapshot.model
-    if model.degree == 0:
-        return np.zeros((len(coefficients), 2, 3))
-    slopes = coefficients[:, :, [model.term(1, 0), model.term(0, 1)]]
-    return slopes.transpose(0, 2, 1)
+def _expanded(snapshot: Snapshot) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:
+    """The colour polynomials around the triangles' centroids.
+
+    Returns:
+        Mean colours [T, 3], gradients [T, 2, 3], and curvatures [T, 4, 3] of quadratic colours,
+        see `Scene`.
+    """
+    mesh, model, coefficients = snapshot.mesh, snapshot.model, snapshot.coefficients
+    corners = mesh.vertices[mesh.triangles]
+    centres = corners.mean(axis=1)
+    colors = colors_at_centres(mesh, model, coefficients)
+    gradients = np.zeros((len(coefficients), 2, 3))
+    if model.degree > 0:
+        slopes = coefficients[:, :, [model.term(1, 0), model.term(0, 1)]]
+        gradients += slopes.transpose(0, 2, 1)
+    if model.degree < 2:
+        return colors, gradients, None
+    terms = [model.term(2, 0), model.term(1, 1), model.term(0, 2)]
+    bends = coefficients[:, :, terms].transpose(0, 2, 1)
+    x, y = centres[:, :1], centres[:, 1:]
+    gradients[:, 0] += 2 * x * bends[:, 0] + y * bends[:, 1]
+    gradients[:, 1] += x * bends[:, 1] + 2 * y * bends[:, 2]
+    # over a triangle the mean of x^2 from the centroid is that over the corners divided by 4
+    away = corners - centres[:, None]
+    squares = away[:, :, [0, 0, 1]] * away[:, :, [0, 1, 1]]
+    bulge = np.einsum("tk,tkc->tc", squares.mean(axis=1) / 4, bends)
+    return colors + bulge, gradients, np.concatenate([-bulge[:, None], bends], axis=1)

@@ -14,7 +14,13 @@ from stages.mesh import Mesh, heights_of, next_corner, previous_corner
 from stages.topology import TOPOLOGIES, Goal
 from stages.topology.energy import LEAST_GAIN, Energy
 from stages.validate import assert_valid
-from tests.kernel_samples import noise, poisoned_workspace, random_mesh, waves
+from tests.kernel_samples import (
+    noise,
+    poisoned_workspace,
+    random_mesh,
+    random_weights,
+    waves,
+)
 from warp_kernels.color_model import COLOR_MODELS, LINEAR, ColorModel
 from warp_kernels.device import Device
 from warp_kernels.topology_gains import IMPOSSIBLE, SPLIT_PLACES
@@ -121,6 +127,29 @@ def test_collapse_costs_are_what_collapses_add(model: ColorModel, seed: int, dev
     assert (mesh.twins[half_edges[legal]] < 0).any()
     added = [total(appraiser, collapse_edges(mesh, [edge])) - before for edge in half_edges[legal]]
     np.testing.assert_allclose(costs[legal], added, **TOLERANCE)
+
+
+@MODELS
+def test_weighted_gains_are_what_weighted_edits_bring(model: ColorModel, device: str) -> None:
+    """Flips, splits and collapses over a picture with weights: some of each by themselves."""
+    mesh, weights = mesh_of_seed(0), random_weights(WIDTH, HEIGHT)
+    workspace = poisoned_workspace(
+        Device(device, 2), noise(WIDTH, HEIGHT), mesh, model, weights=weights
+    )
+    appraiser = Appraiser(workspace, LEAST_HEIGHT)
+    before = total(appraiser, mesh)
+    edges, half_edges = mesh.edge_half_edges, np.arange(3 * mesh.triangle_count)
+    flips = np.flatnonzero(flippable(mesh, edges, LEAST_HEIGHT))[::7]
+    collapses = half_edges[collapsible(mesh, half_edges, LEAST_HEIGHT)][::11]
+    gains, costs = appraiser.flip_gains(edges[flips]), appraiser.collapse_costs(collapses)
+    splits = edges[appraiser.split_gains(edges)[0] > -IMPOSSIBLE][::9]
+    split_gains, points = appraiser.split_gains(splits)
+    flipped = [flip_edges(mesh, [edge]) for edge in edges[flips]]
+    collapsed = [collapse_edges(mesh, [half_edge]) for half_edge in collapses]
+    split = [split_edges(mesh, [edge], [at]) for edge, at in zip(splits, points, strict=True)]
+    for measured, edited in ((gains, flipped), (-costs, collapsed), (split_gains, split)):
+        saved = [before - total(appraiser, after) for after in edited]
+        np.testing.assert_allclose(measured, saved, **TOLERANCE)
 
 
 @SEEDS

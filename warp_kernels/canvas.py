@@ -49,6 +49,7 @@ class Canvas:
         self._triangle_of = device.empty(band, int)
         self._pixels = device.empty((height, width), wp.vec3ub)
         self._edge_count = device.empty(1, int)
+        self._curved = device.empty(1, int)
         self._line_width = max((style.line_width for style in styles), default=0.0)
         shape = (height, width) if self._line_width else (1, 1)
         self._coverage = device.empty(shape, float)
@@ -68,6 +69,7 @@ class Canvas:
         edges: np.ndarray,
         colors: np.ndarray,
         gradients: np.ndarray,
+        curvatures: np.ndarray | None,
         centres: np.ndarray,
     ) -> np.ndarray:
         """Draw a mesh.
@@ -78,7 +80,8 @@ class Canvas:
             edges: Ends, [E, 2].
             colors: Mean colours [code values], [T, 3].
             gradients: Change of colour to the right and down [code values / px], [T, 2, 3].
-            centres: Where a triangle has its mean colour [px of the picture], [T, 2].
+            curvatures: What quadratic colours add, see `Scene`, [T, 4, 3]; None for others.
+            centres: Centroids of the triangles [px of the picture], [T, 2].
 
         Returns:
             Code values, [rows, columns, 3] uint8; a copy of its own.
@@ -94,10 +97,13 @@ class Canvas:
             (self._edges, edges),
             (self._colors, colors),
             (self._gradients, gradients),
+            (self._curved, np.array([0 if curvatures is None else 1])),
             (self._centres, centres),
             (self._edge_count, np.array([len(edges)])),
         ):
             self.device.write(array, values)
+        if curvatures is not None:
+            self.device.write(self._curvatures, curvatures)
         phases = []
         if self._line_width:
             self.device.clear(self._coverage)
@@ -117,6 +123,7 @@ class Canvas:
         self._edges = self._empty(vertices + triangles + 1, wp.vec2i)
         self._colors = self._empty(triangles, wp.vec3f)
         self._gradients = self._empty((triangles, 2), wp.vec3f)
+        self._curvatures = self._empty((triangles, 4), wp.vec3f)
         self._centres = self._empty(triangles, wp.vec2f)
         self._record()
 
@@ -126,6 +133,8 @@ class Canvas:
         scene = Scene()
         scene.colors = self._colors
         scene.gradients = self._gradients
+        scene.curvatures = self._curvatures
+        scene.curved = self._curved
         scene.centres = self._centres
         scene.edge_coverage = self._coverage
         self._edge_drawing = record_edge_coverage(

@@ -6,10 +6,9 @@ from typing import Any
 
 import warp as wp
 
-from warp_kernels.color_model import ColorModel
 from warp_kernels.descend import smallest_height
 from warp_kernels.device import Device, Phase
-from warp_kernels.moments import moment_types
+from warp_kernels.moment_layout import MomentLayout, moment_types
 from warp_kernels.triangle_energy import triangle_energy
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
@@ -46,6 +45,8 @@ class SurveyArrays:
     """Sums of x^a left of each column, [W + 1] vectors."""
     limits: wp.array
     """Smallest height [px] and largest area [px^2] of the triangles that a change makes, [2]."""
+    gauge: wp.array
+    """The scale of energies and the size of the picture, see `fit`."""
     changes_out: wp.array
     """Change of energy [code value^2 px], [N] float64; its sign is the launcher's."""
     points_out: wp.array
@@ -67,9 +68,9 @@ def corner_after(half_edge: int) -> int:
 
 
 @cache
-def _flip_kernel(model: ColorModel) -> Any:
-    powers_type = moment_types(model).powers
-    energy = triangle_energy(model)
+def _flip_kernel(layout: MomentLayout) -> Any:
+    types = moment_types(layout)
+    energy = triangle_energy(layout)
 
     @wp.kernel(enable_backward=False, module="unique")
     def flip_gains(
@@ -80,8 +81,9 @@ def _flip_kernel(model: ColorModel) -> Any:
         corners: wp.array(dtype=int),
         vertices: wp.array(dtype=wp.vec2d),
         energies: wp.array(dtype=wp.float64),
-        table: wp.array(dtype=wp.vec4i),
-        powers: wp.array(dtype=powers_type),
+        table: wp.array(dtype=types.entry),
+        powers: wp.array(dtype=types.powers),
+        gauge: wp.array(dtype=wp.vec3d),
         height: int,
         limits: wp.array(dtype=wp.float64),
         # Out:
@@ -103,17 +105,17 @@ def _flip_kernel(model: ColorModel) -> Any:
                 gains_out[number] = (
                     energies[side / 3]
                     + energies[twin / 3]
-                    - energy(a, d, c, table, powers, height)
-                    - energy(b, c, d, table, powers, height)
+                    - energy(a, d, c, table, powers, gauge[0], height)
+                    - energy(b, c, d, table, powers, gauge[0], height)
                 )
 
     return flip_gains
 
 
 @cache
-def _collapse_kernel(model: ColorModel) -> Any:
-    powers_type = moment_types(model).powers
-    energy = triangle_energy(model)
+def _collapse_kernel(layout: MomentLayout) -> Any:
+    types = moment_types(layout)
+    energy = triangle_energy(layout)
 
     @wp.kernel(enable_backward=False, module="unique")
     def collapse_costs(
@@ -125,8 +127,9 @@ def _collapse_kernel(model: ColorModel) -> Any:
         fan_corners: wp.array(dtype=int),
         vertices: wp.array(dtype=wp.vec2d),
         energies: wp.array(dtype=wp.float64),
-        table: wp.array(dtype=wp.vec4i),
-        powers: wp.array(dtype=powers_type),
+        table: wp.array(dtype=types.entry),
+        powers: wp.array(dtype=types.powers),
+        gauge: wp.array(dtype=wp.vec3d),
         height: int,
         limits: wp.array(dtype=wp.float64),
         # Out:
@@ -152,16 +155,16 @@ def _collapse_kernel(model: ColorModel) -> Any:
                 if not allowed(a, b, c, limits):
                     cost += wp.float64(wp.static(IMPOSSIBLE))
                 elif cost < wp.float64(wp.static(0.5 * IMPOSSIBLE)):
-                    cost += energy(a, b, c, table, powers, height)
+                    cost += energy(a, b, c, table, powers, gauge[0], height)
         costs_out[number] = cost
 
     return collapse_costs
 
 
 @cache
-def _split_kernel(model: ColorModel) -> Any:
-    powers_type = moment_types(model).powers
-    energy = triangle_energy(model)
+def _split_kernel(layout: MomentLayout) -> Any:
+    types = moment_types(layout)
+    energy = triangle_energy(layout)
 
     @wp.kernel(enable_backward=False, module="unique")
     def split_gains(
@@ -172,8 +175,9 @@ def _split_kernel(model: ColorModel) -> Any:
         corners: wp.array(dtype=int),
         vertices: wp.array(dtype=wp.vec2d),
         energies: wp.array(dtype=wp.float64),
-        table: wp.array(dtype=wp.vec4i),
-        powers: wp.array(dtype=powers_type),
+        table: wp.array(dtype=types.entry),
+        powers: wp.array(dtype=types.powers),
+        gauge: wp.array(dtype=wp.vec3d),
         height: int,
         limits: wp.array(dtype=wp.float64),
         # Out:
@@ -209,11 +213,11 @@ def _split_kernel(model: ColorModel) -> Any:
             elif wp.static(SPLIT_PLACES[place][1] != 0.0):
                 possible = False
             if possible:
-                gain = before - energy(a, m, c, table, powers, height)
-                gain -= energy(m, b, c, table, powers, height)
+                gain = before - energy(a, m, c, table, powers, gauge[0], height)
+                gain -= energy(m, b, c, table, powers, gauge[0], height)
                 if twin >= 0:
-                    gain -= energy(m, a, d, table, powers, height)
-                    gain -= energy(b, m, d, table, powers, height)
+                    gain -= energy(m, a, d, table, powers, gauge[0], height)
+                    gain -= energy(b, m, d, table, powers, gauge[0], height)
                 if gain > best:
                     best = gain
                     point = m
@@ -224,7 +228,7 @@ def _split_kernel(model: ColorModel) -> Any:
 
 
 def record_flip_gains(
-    device: Device, model: ColorModel, arrays: SurveyArrays, *, height: int
+    device: Device, layout: MomentLayout, arrays: SurveyArrays, *, height: int
 ) -> Phase:
     """Prepare the launch that measures every flip.
 
@@ -232,20 +236,20 @@ def record_flip_gains(
 
     Args:
         device: Where to run.
-        model: The polynomial colour.
+        layout: The polynomial colour and its integers.
         arrays: What is read and written; half-edges stand for their edges.
         height: Rows of the image [px].
 
     Deviation: the paper flips for the Delaunay property alone (Sec. 3.4).
     """
     mesh = [arrays.half_edges, arrays.twins, arrays.corners, arrays.vertices, arrays.energies]
-    picture = [arrays.table, arrays.powers, height]
+    picture = [arrays.table, arrays.powers, arrays.gauge, height]
     inputs = [*mesh, *picture, arrays.limits]
-    return device.record(_flip_kernel(model), inputs, [arrays.changes_out])
+    return device.record(_flip_kernel(layout), inputs, [arrays.changes_out])
 
 
 def record_collapse_costs(
-    device: Device, model: ColorModel, arrays: SurveyArrays, *, height: int
+    device: Device, layout: MomentLayout, arrays: SurveyArrays, *, height: int
 ) -> Phase:
     """Prepare the launch that measures every half-edge collapse.
 
@@ -253,7 +257,7 @@ def record_collapse_costs(
 
     Args:
         device: Where to run.
-        model: The polynomial colour.
+        layout: The polynomial colour and its integers.
         arrays: What is read and written; the origins of half-edges move into their destinations.
         height: Rows of the image [px].
 
@@ -261,14 +265,14 @@ def record_collapse_costs(
     """
     fans = [arrays.fan_offsets, arrays.fan_corners]
     mesh = [arrays.half_edges, arrays.corners, *fans, arrays.vertices, arrays.energies]
-    picture = [arrays.table, arrays.powers, height]
+    picture = [arrays.table, arrays.powers, arrays.gauge, height]
     inputs = [*mesh, *picture, arrays.limits]
-    return device.record(_collapse_kernel(model), inputs, [arrays.changes_out])
+    return device.record(_collapse_kernel(layout), inputs, [arrays.changes_out])
 
 
 def record_split_gains(
     device: Device,
-    model: ColorModel,
+    layout: MomentLayout,
     arrays: SurveyArrays,
     *,
     height: int,
@@ -279,14 +283,14 @@ def record_split_gains(
 
     Args:
         device: Where to run.
-        model: The polynomial colour.
+        layout: The polynomial colour and its integers.
         arrays: What is read and written; half-edges stand for their edges.
         height: Rows of the image [px].
 
     Deviation: the paper splits the triangles of the largest error at their centroids (Sec. 3.4).
     """
     mesh = [arrays.half_edges, arrays.twins, arrays.corners, arrays.vertices, arrays.energies]
-    picture = [arrays.table, arrays.powers, height]
+    picture = [arrays.table, arrays.powers, arrays.gauge, height]
     inputs = [*mesh, *picture, arrays.limits]
     outputs = [arrays.changes_out, arrays.points_out]
-    return device.record(_split_kernel(model), inputs, outputs)
+    return device.record(_split_kernel(layout), inputs, outputs)

@@ -5,32 +5,33 @@ from typing import Any
 
 import warp as wp
 
-from warp_kernels.color_model import ColorModel
 from warp_kernels.fit import fit_moments
 from warp_kernels.image_tables import table_entry
-from warp_kernels.moments import area_sums_left_of, color_sums_left_of, moment_types
+from warp_kernels.moment_layout import MomentLayout, moment_types
+from warp_kernels.moments import area_sums_left_of, color_sums_left_of
 from warp_kernels.raster import column_of, to_fixed, walk_edge
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 
 
 @cache
-def triangle_energy(model: ColorModel) -> Any:
+def triangle_energy(layout: MomentLayout) -> Any:
     """A wp.func: E of the triangle a, b, c [px] from nine numbers and the picture's tables."""
-    types = moment_types(model)
-    color_type, area_type, powers_type = types.color, types.area, types.powers
-    color_sums = color_sums_left_of(model)
-    area_sums = area_sums_left_of(model)
-    depth = model.table_depth
-    fit = fit_moments(model)
+    types = moment_types(layout)
+    color_type, area_type, integer = types.color, types.area, types.integer
+    color_sums = color_sums_left_of(layout)
+    area_sums = area_sums_left_of(layout)
+    depth = layout.depth
+    fit = fit_moments(layout)
 
     @wp.func
     def energy(
         a: wp.vec2d,
         b: wp.vec2d,
         c: wp.vec2d,
-        table: wp.array(dtype=wp.vec4i),
-        powers: wp.array(dtype=powers_type),
+        table: wp.array(dtype=types.entry),
+        powers: wp.array(dtype=types.powers),
+        gauge: wp.vec3d,
         height: int,
     ) -> wp.float64:
         """Sum along the three edges, then solve."""
@@ -47,16 +48,16 @@ def triangle_energy(model: ColorModel) -> Any:
                 tail = c
                 head = a
             walk = walk_edge(to_fixed(tail), to_fixed(head), height)
-            sign = wp.int64(walk.sign)
+            sign = integer(walk.sign)
             row = walk.row_begin
             while row < walk.row_end:
                 column = wp.clamp(column_of(walk.position), 0, width)
                 y = wp.int64(row - height / 2)
                 entry = table_entry(row, column, width, wp.static(depth))
                 color += sign * color_sums(table, entry, y)
-                area += sign * area_sums(powers[column], y)
+                area += sign * area_sums(table, entry, powers[column], y)
                 walk.position += walk.step
                 row += 1
-        return fit(color, area).energy
+        return fit(color, area, gauge).energy
 
     return energy
