@@ -211,7 +211,19 @@ def linear_energies(
     right = np.stack([np.stack([total(a * values[:, c]) for a in basis], -1) for c in range(3)], -1)
     squares = total((values**2).sum(axis=1))
     solution = np.linalg.pinv(matrix, rcond=1e-13, hermitian=True) @ right
-    return 0.5 * number_format.unit**2 * (squares - (solution * right).sum(axis=(1, 2)))
+    energies = 0.5 * number_format.unit**2 * (squares - (solution * right).sum(axis=(1, 2)))
+    # as the program does where the pixels of a triangle lie on a line
+    flat = constant_energies(pixels, labels, count, number_format, order)
+    return np.where(_spread_out(labels, count, basis), energies, flat)
+
+
+def _spread_out(labels: np.ndarray, count: int, basis: tuple[np.ndarray, ...]) -> np.ndarray:
+    """Which triangles have pixels that do not lie on a line, [count] bool; exact."""
+    (n, x, y), (_, xx, xy), (_, _, yy) = (
+        [_sums(labels, a * b, count, EXACT, None).astype(np.int64).astype(object) for a in basis]
+        for b in basis
+    )
+    return ((n * xx - x * x) * (n * yy - y * y) - (n * xy - x * y) ** 2 > 0).astype(bool)
 
 
 ENERGIES: dict[str, Callable[..., np.ndarray]] = {

@@ -20,7 +20,7 @@ HEADS = (
 class Thresholds:
     """Triangles are split while sqrt(E(T) / |I|) exceeds tau."""
 
-    taus: tuple[float, ...] = (3.0, 2.0, 1.2, 0.8)
+    taus: tuple[float, ...] = (4.0, 2.5, 1.5, 1.0)
     """Thresholds [code values]."""
     cap: int = 6000
     """Most triangles."""

@@ -1,9 +1,7 @@
 """Delaunay meshes with a wanted number of triangles, whatever places their vertices."""
 
 from collections.abc import Callable
-from dataclasses import replace
 
-import cv2
 import numpy as np
 from scipy.spatial import Delaunay
 
@@ -90,45 +88,3 @@ def delaunay_mesh(points: np.ndarray, size: tuple[int, int]) -> Mesh:
     triangles = triangles[np.abs(areas_of(points[triangles])) > 1e-9]
     used, rows = np.unique(triangles, return_inverse=True)
     return mesh_of(points[used], rows.reshape(-1, 3), *size)
-
-
-def apart(
-    candidates: np.ndarray, radius: float | np.ndarray, size: tuple[int, int], most: int
-) -> np.ndarray:
-    """Serve pixels in their order, skipping each that lies within the radius of one served.
-
-    Args:
-        candidates: Pixels (column, row), [N, 2] int.
-        radius: Distance to keep [px], one or [N].
-        size: Width and height of the picture [px].
-        most: Pixels to serve at most.
-
-    Returns:
-        The numbers of those served, [M].
-    """
-    blocked = np.zeros((size[1], size[0]), dtype=np.uint8)
-    radii = np.broadcast_to(radius, len(candidates)).tolist()
-    served = []
-    for number, (column, row) in enumerate(candidates.tolist()):
-        if blocked[row, column]:
-            continue
-        served.append(number)
-        if len(served) >= most:
-            break
-        # four fractional bits, so that small radii differ as well
-        cv2.circle(
-            blocked, (16 * column, 16 * row), int(16 * radii[number]), 1, cv2.FILLED, shift=4
-        )
-    return np.array(served, dtype=np.int64)
-
-
-def turned_to_ids(mesh: Mesh) -> Mesh:
-    """The mesh with ids counted from 0, as that of every layout."""
-    vertices, triangles = mesh.vertex_count, mesh.triangle_count
-    return replace(
-        mesh,
-        vertex_ids=np.arange(vertices),
-        triangle_ids=np.arange(triangles),
-        next_vertex_id=vertices,
-        next_triangle_id=triangles,
-    )

@@ -4,8 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from benchmarks.paper.related.counting import apart, mesh_of_count
+from benchmarks.paper.related.counting import mesh_of_count
 from benchmarks.paper.related.detail import drawn_by, gradient, positions
+from benchmarks.paper.related.spacing import apart
 from stages.mesh import Mesh
 
 CANDIDATES = 8

@@ -4,8 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from benchmarks.paper.related.counting import apart, mesh_of_count
+from benchmarks.paper.related.counting import mesh_of_count
 from benchmarks.paper.related.detail import edges, pixels_anywhere, pixels_where, positions
+from benchmarks.paper.related.spacing import apart
 from stages.mesh import Mesh
 
 

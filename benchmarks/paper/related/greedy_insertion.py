@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import islice
 
 import cv2
 import numpy as np
@@ -47,16 +48,13 @@ class GreedyInsertion:
             load_mesh(workspace, mesh)
             colors, energies, _ = workspace.fit()
             most = min(missing, max(1, int(self.growth * mesh.triangle_count)))
-            worst = np.argsort(-energies, kind="stable")[:most]
+            worst = np.argsort(-energies, kind="stable")
             corners = mesh.vertices[mesh.triangles[worst]]
-            found = [
-                appeal(*triangle) for triangle in zip(corners, colors[worst, :, 0], strict=True)
-            ]
-            points = np.array([point for point in found if point is not None]).reshape(-1, 2)
-            finer = delaunay_mesh(np.concatenate([mesh.vertices, points]), size)
-            if finer.triangle_count <= mesh.triangle_count:
-                break  # no triangle that errs holds a pixel within
-            mesh = finer
+            found = map(appeal, corners, colors[worst, :, 0])
+            points = list(islice((point for point in found if point is not None), most))
+            if not points:
+                break  # no triangle that errs has room for a vertex
+            mesh = delaunay_mesh(np.concatenate([mesh.vertices, points]), size)
         return mesh
 
     def appeal(self, pixels: np.ndarray) -> "Appeal":

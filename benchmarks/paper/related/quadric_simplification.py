@@ -4,11 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from benchmarks.paper.related.counting import turned_to_ids
 from benchmarks.paper.related.detail import luma
 from stages.edits import collapse_edges, collapsible, independent_collapses
 from stages.layouts.grid import Grid
-from stages.mesh import Mesh, areas_of, next_corner
+from stages.mesh import Mesh, areas_of, mesh_of, next_corner
 
 LEAST_HEIGHT = 0.3
 """Collapses that leave a thinner triangle are not done [px]."""
@@ -51,7 +50,7 @@ class QuadricSimplification:
             mesh = collapse_edges(mesh, ranked)
             np.add.at(quadrics, targets, quadrics[origins])
             mesh = _place_best(mesh, np.unique(targets), quadrics, places)
-        return turned_to_ids(mesh)
+        return mesh_of(mesh.vertices, mesh.triangles, width, height)
 
 
 def _heights(grey: np.ndarray, vertices: np.ndarray) -> np.ndarray:

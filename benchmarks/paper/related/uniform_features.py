@@ -5,8 +5,9 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from benchmarks.paper.related.counting import apart, mesh_of_count
+from benchmarks.paper.related.counting import mesh_of_count
 from benchmarks.paper.related.detail import luma, pixels_anywhere, positions
+from benchmarks.paper.related.spacing import apart
 from stages.mesh import Mesh
 
 CLOSENESS = 0.65
