@@ -26,6 +26,7 @@ def parse() -> argparse.Namespace:
     parser.add_argument("--out", type=Path, default=RESULTS, metavar="FOLDER")
     parser.add_argument("--only", default=",".join(EXPERIMENTS), metavar="NAME,NAME")
     parser.add_argument("--triangles", type=int, nargs="+", default=[300, 700, 1500])
+    parser.add_argument("--iterations", type=int, help="at most, to try things out quickly")
     parser.add_argument("--device", default="cpu", metavar="auto|cpu|cuda:N")
     parser.add_argument("--threads", type=int, default=0, help="0 for one per core")
     parser.add_argument("--seed", type=int, default=0)
@@ -45,6 +46,7 @@ def main() -> None:
         plots=options.out / "paper",
         counts=tuple(options.triangles),
         seed=options.seed,
+        iterations=options.iterations,
         say=lambda text: print(text, flush=True),
     )
     sections: list[Section] = []

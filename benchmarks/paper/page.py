@@ -62,6 +62,8 @@ def write_page(path: Path, study: Study, sections: Sequence[Section], command: s
         "picture and drawn colour [code values]; the paper's R (Eq. 12) is sqrt(3 / 2) of it. "
         "Seconds are those of one triangulation, from the decoded picture to the fitted colours.",
     ]
+    if study.iterations is not None:
+        parts.append(f"**A quick try: at most {study.iterations} iterations.**")
     if rows:
         parts += ["## Checks", table(HEADS, rows)]
     for section in sections:

@@ -59,6 +59,8 @@ class Study:
     """Numbers of triangles of the comparisons."""
     seed: int = 0
     """Of all randomness."""
+    iterations: int | None = None
+    """Of every method instead of its own, to try things out quickly."""
     say: Callable[[str], None] = print
     """Tells the progress."""
     _solved: dict[tuple, Solution] = field(default_factory=dict)
@@ -111,6 +113,8 @@ class Study:
         """
         pixels = self.pictures[name]
         frame = Frame(0, 0, TIME_BASE, pixels)
+        if self.iterations is not None:
+            method = method.with_options(iterations=min(self.iterations, method.options.iterations))
         options = method.with_triangles(count, error)
         triangulator = Triangulator(self.device, (frame.width, frame.height), options)
         begun = perf_counter()
