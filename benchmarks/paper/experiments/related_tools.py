@@ -50,8 +50,10 @@ class RelatedTools:
         summary, checks = _summary(study, errors)
         parts = [
             "Every tool is rebuilt from its published idea in `benchmarks/paper/related`, with "
-            "the parameters that served it best; its triangles get the colours of least error. "
-            "The gain is the part by which ours lowers the rmse.",
+            "the parameters that served it best in a search over a few photographs; its triangles "
+            "get the colours of least error. *Greedy insertion, steepest pixel* is no one's tool: "
+            "it strengthens the classic one for constant colours. The gain is the part by which "
+            "ours lowers the rmse.",
             table(SUMMARY_HEADS, summary),
         ]
         for color, label in COLORS.items():

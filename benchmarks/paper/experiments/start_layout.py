@@ -64,7 +64,8 @@ class StartLayout:
         self._draw(study, shown)
         body = (
             f"{self.triangles} triangles from the start, constant colours, no refinement, as in "
-            "the paper's figure. rmse of the first mesh and of the last.\n\n"
+            "the paper's figure; the paper's topology restores the Delaunay property for most "
+            "of its iterations. rmse of the first mesh and of the last.\n\n"
             f"{table(HEADS, rows)}\n\n{picture(study, 'fig3.png', 'first and last meshes')}\n\n"
             f"{picture(study, 'fig3_curves.png', 'rmse against iterations')}"
         )
