@@ -27,7 +27,7 @@ class Panel:
 
 
 def save_curves(path: Path, panels: Sequence[Panel]) -> None:
-    """Draw panels side by side, at most three in a row.
+    """Draw panels side by side, two or three in a row.
 
     Args:
         path: The PNG.
@@ -36,7 +36,7 @@ def save_curves(path: Path, panels: Sequence[Panel]) -> None:
     mpl.use("Agg")
     from matplotlib import pyplot
 
-    columns = min(3, len(panels))
+    columns = 2 if len(panels) == 4 else min(3, len(panels))
     rows = -(-len(panels) // columns)
     figure, axes = pyplot.subplots(
         rows, columns, figsize=(4.2 * columns, 3.1 * rows), squeeze=False, layout="constrained"

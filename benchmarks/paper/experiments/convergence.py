@@ -19,7 +19,7 @@ class Convergence:
     """Both methods for as many iterations as the paper, in both colour models."""
 
     triangles: int = 700
-    shown: int = 3
+    shown: int = 2
     """Pictures that are looked at."""
     iterations: int = 600
 

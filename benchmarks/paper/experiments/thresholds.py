@@ -24,7 +24,7 @@ class Thresholds:
     """Thresholds [code values]."""
     cap: int = 6000
     """Most triangles."""
-    shown: int = 2
+    shown: int = 1
     """Pictures that are looked at."""
 
     def run(self, study: Study) -> Section:
