@@ -9,21 +9,25 @@ from stages.edits import (
     flippable,
     independent_collapses,
     independent_flips,
+    press_onto_border,
+    pressable,
 )
 from stages.edits.collapse_edges import collapsed_heights
 from stages.edits.flip_edges import flipped_heights
-from stages.edits.neighbourhood import edge_ends, edge_triangles
-from stages.mesh import Mesh
+from stages.edits.independent import first_come
+from stages.edits.neighbourhood import edge_ends, edge_triangles, stars
+from stages.mesh import Mesh, previous_corner
 
 
 def collapse_slivers(mesh: Mesh, min_height: float, min_area: float = 0.0) -> Mesh:
     """Collapse thin and small triangles on their shortest edges, thinnest first.
 
-    Either end may move into the other: the direction is taken that leaves the highest triangles
-    behind. A collapse may leave a triangle below `min_height` only if the star that it changes
-    held a lower one that survives. Where no sliver can be collapsed, their longest edges are
-    flipped if that raises the lower triangle of the pair; where that fails as well, the middle
-    edges collapse. What nothing mends stays.
+    Those that lie flat on the border are pressed onto it. Of an edge either end may move into the
+    other: the direction is taken that leaves the highest triangles behind. A collapse may leave a
+    triangle below `min_height` only if the star that it changes held a lower one that survives.
+    Where no sliver can be collapsed, their longest edges are flipped if that raises the lower
+    triangle of the pair; where that fails as well, the middle edges collapse. What nothing mends
+    stays.
 
     Args:
         mesh: A valid mesh.
@@ -42,7 +46,9 @@ def collapse_slivers(mesh: Mesh, min_height: float, min_area: float = 0.0) -> Me
     while True:
         slivers = np.flatnonzero((mesh.heights < min_height) | (mesh.areas < min_area))
         slivers = slivers[np.argsort(mesh.heights[slivers], kind="stable")]
-        mended = _collapse(mesh, slivers, 0, min_height)
+        mended = _press(mesh, slivers, min_height)
+        if mended is mesh:
+            mended = _collapse(mesh, slivers, 0, min_height)
         if mended is mesh:
             mended = _flip_longest(mesh, slivers)
         if mended is mesh:
@@ -50,6 +56,22 @@ def collapse_slivers(mesh: Mesh, min_height: float, min_area: float = 0.0) -> Me
         if mended is mesh:
             return mesh
         mesh = mended
+
+
+def _press(mesh: Mesh, slivers: np.ndarray, min_height: float) -> Mesh:
+    """Press those onto the border whose longest edge lies there.
+
+    Args:
+        mesh: A valid mesh.
+        slivers: Triangle numbers, shape [S], the most urgent first.
+        min_height: Height that the triangles around keep [px].
+    """
+    longest = 3 * slivers + _lengths(mesh, slivers).argmax(axis=1)
+    longest = longest[mesh.twins[longest] < 0]
+    longest = longest[pressable(mesh, longest, min_height)]
+    places, corners = stars(mesh, mesh.triangles.reshape(-1)[previous_corner(longest)])
+    chosen = first_come(places, corners // 3, len(longest), mesh.triangle_count)
+    return press_onto_border(mesh, longest[chosen]) if chosen.any() else mesh
 
 
 def _collapse(mesh: Mesh, slivers: np.ndarray, rank: int, min_height: float) -> Mesh:

@@ -22,9 +22,12 @@ from warp_kernels.errors import OptionError
 from warp_kernels.solve import SUMS
 from warp_kernels.workspace import Workspace
 
-SPRING = 1500.0
+SPRING = 2000.0
 """Strength of the temporal term [code value^2]: a vertex leaves the flow's path where the picture
 pulls harder than noise does."""
+FRAME_DISPLACEMENT = 0.5
+"""Distance of the variants in later frames [px]: a wider one finds steadier places, and beyond this
+what the last iterations of the first frame have settled would move again."""
 DEAD_BAND = 0.1
 """Steps of later frames below this are not taken [px]: noise must not move what stands still."""
 CALM_QUALITY = 0.02
@@ -210,7 +213,12 @@ class Triangulator:
         springs[known, 2] = SPRING * self._space.scale
         load_mesh(self._workspace, mesh, springs)
         return optimize(
-            self._workspace, mesh, iterations, self.options.optimize, dead_band=DEAD_BAND
+            self._workspace,
+            mesh,
+            iterations,
+            self.options.optimize,
+            dead_band=DEAD_BAND,
+            displacement=FRAME_DISPLACEMENT,
         )
 
     def _trial(self, frame: Frame, layout: Layout, rng: np.random.Generator, goal: Goal) -> Trial:

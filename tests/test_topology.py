@@ -277,7 +277,10 @@ def test_every_topology_keeps_its_contract(model: ColorModel, name: str, device:
             assert_valid(adapted)
             np.testing.assert_array_equal(adapted.triangles, again.triangles)
             _, old, new = np.intersect1d(mesh.vertex_ids, adapted.vertex_ids, return_indices=True)
-            np.testing.assert_array_equal(adapted.vertices[new], mesh.vertices[old])
+            moved = (adapted.vertices[new] != mesh.vertices[old]).any(axis=1)
+            border = adapted.on_left_right | adapted.on_top_bottom
+            assert border[new[moved]].all()  # pressed onto it
+            np.testing.assert_allclose(adapted.vertices[new], mesh.vertices[old], atol=1)
     np.testing.assert_array_equal(mesh.vertices, kept[0])
     np.testing.assert_array_equal(mesh.triangles, kept[1])
 

@@ -131,11 +131,12 @@ def _ranked_splits(
     """
     edges = mesh.edge_half_edges
     twins = mesh.twins[edges]
+    added = np.where(twins >= 0, 2, 1)
     beside = energies[edges // 3] + np.where(twins >= 0, energies[twins // 3], 0.0)
-    likely = np.argsort(-beside, kind="stable")[: EXAMINED * most]
+    likely = np.argsort(-beside / added, kind="stable")[: EXAMINED * most]
     edges = edges[likely]
     gains, points = appraiser.split_gains(edges)
-    gains = gains / np.where(twins[likely] >= 0, 2, 1)
+    gains = gains / added[likely]
     order = np.argsort(-gains, kind="stable")
     return edges[order], gains[order], points[order]
 
@@ -159,7 +160,8 @@ def _ranked_collapses(mesh: Mesh, appraiser: Appraiser, most: int) -> tuple[np.n
     origins = mesh.triangles.reshape(-1)
     on_border = (mesh.on_left_right | mesh.on_top_bottom)[origins]
     half_edges = np.flatnonzero(chosen[origins] & (~on_border | (mesh.twins < 0)))
-    costs = appraiser.collapse_costs(half_edges) / 2
+    lost = np.where(mesh.twins[half_edges] >= 0, 2, 1)
+    costs = appraiser.collapse_costs(half_edges) / lost
     order = np.argsort(costs, kind="stable")[: EXAMINED * most]
     return half_edges[order], costs[order]
 
