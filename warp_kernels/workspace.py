@@ -147,9 +147,9 @@ class Workspace:
             (self._vertices[0], vertices),
             (self.triangles, triangles),
             (self._edges, edges),
-            (self._sides, sides),
-            (self.fan_offsets, fan_offsets),
-            (self.fan_corners, fan_corners),
+            (self.sides, sides),
+            (self._fan_offsets, fan_offsets),
+            (self._fan_corners, fan_corners),
             (self._freedom, freedom),
             (self._anchors, anchors),
         ):
@@ -269,9 +269,9 @@ class Workspace:
         self._vertices = (self._empty(vertices, wp.vec2d), self._empty(vertices, wp.vec2d))
         self.triangles = self._empty(triangles, wp.vec3i)
         self._edges = self._empty(edges, wp.vec2i)
-        self._sides = self._empty(triangles, wp.vec3i)
-        self.fan_offsets = self._empty(vertices + 1, wp.int32)
-        self.fan_corners = self._empty(3 * triangles, wp.int32)
+        self.sides = self._empty(triangles, wp.vec3i)
+        self._fan_offsets = self._empty(vertices + 1, wp.int32)
+        self._fan_corners = self._empty(3 * triangles, wp.int32)
         self._freedom = self._empty(vertices, wp.vec2d)
         self._anchors = self._empty(vertices, wp.vec3d)
         self._memory = self._empty(vertices, wp.vec4d)
@@ -279,8 +279,8 @@ class Workspace:
         self._color_sums = self._empty(rows, types.color)
         self._area_sums = self._empty(rows, types.area)
         self._energies = self._empty((triangles, TRIANGLE_VARIANTS), wp.float64)
-        self._fit_color_sums = self._empty((edges, 1), types.color)
-        self._fit_area_sums = self._empty((edges, 1), types.area)
+        self.fit_color_sums = self._empty((edges, 1), types.color)
+        self.fit_area_sums = self._empty((edges, 1), types.area)
         self._coefficients = self._empty((triangles, 3, self.model.term_count), wp.float64)
         self.fit_energies = self._empty(triangles, wp.float64)
         self._fit_counts = self._empty(triangles, wp.int64)
@@ -300,7 +300,7 @@ class Workspace:
             self.sums,
             triangles=self.triangles,
             moved=self._moved,
-            sides=self._sides,
+            sides=self.sides,
             color_sums=self._color_sums,
             area_sums=self._area_sums,
             gauge=self.gauge,
@@ -312,8 +312,8 @@ class Workspace:
                 vertices=self._vertices[front],
                 triangles=self.triangles,
                 energies=self._energies,
-                fan_offsets=self.fan_offsets,
-                fan_corners=self.fan_corners,
+                fan_offsets=self._fan_offsets,
+                fan_corners=self._fan_corners,
                 freedom=self._freedom,
                 anchors=self._anchors,
                 probe=self._probe,
@@ -337,8 +337,8 @@ class Workspace:
                 probe=self._probe,
                 table=self.table,
                 size=self.size,
-                color_out=self._fit_color_sums,
-                area_out=self._fit_area_sums,
+                color_out=self.fit_color_sums,
+                area_out=self.fit_area_sums,
                 versions=1,
             )
             for front in self._vertices
@@ -346,9 +346,9 @@ class Workspace:
         self._fit = record_fit(
             self.device,
             self.layout,
-            sides=self._sides,
-            color_sums=self._fit_color_sums,
-            area_sums=self._fit_area_sums,
+            sides=self.sides,
+            color_sums=self.fit_color_sums,
+            area_sums=self.fit_area_sums,
             gauge=self.gauge,
             size=self.size,
             coefficients_out=self._coefficients,
