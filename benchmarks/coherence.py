@@ -9,7 +9,7 @@ Every clip is reduced to one size and converted three ways, all drawn without lo
     independent   --independent: each frame is triangulated from scratch
 
 `--write` puts the table and a plot for each clip into docs/results/coherence.md and its folder.
-A clip may name its own frames: CLIP:A-B.
+A clip may name its own frames: CLIP:A-B. Means over the frames of a clip.
 """
 
 import argparse
@@ -20,7 +20,7 @@ from tempfile import TemporaryDirectory
 
 import cv2
 import matplotlib as mpl
-from timing import machine, program, table
+from timing import program, table
 
 from pipeline.animate import animate
 from pipeline.flags import size
@@ -74,7 +74,10 @@ LEGEND = """\
 - **inverted**: triangles without a positive area, in all frames together.
 
 Independent frames share no vertex: all go and come in each step, none flips, and there are no
-paths. `benchmarks/coherence.py --write` makes this page; `trimotion measure SOURCE OUTPUT --track
+paths. Where triangles can show a picture almost exactly, as with flat shapes, frames from scratch
+can be both closer to the source and calmer than a tracked mesh: a good fit is coherent by itself.
+
+`benchmarks/coherence.py --write` makes this page; `trimotion measure SOURCE OUTPUT --track
 JOB.mtrk` prints the same for any clip.
 """
 
@@ -221,15 +224,14 @@ def main() -> None:
             reports = {
                 way: convert_and_measure(source, way, options.triangles, folder) for way in WAYS
             }
-        rows.append(source_row(clip.stem, next(iter(reports.values()))))
-        rows.extend(row(clip.stem, way, report) for way, report in reports.items())
+        title = f"{clip.stem} {frames}"
+        rows.append(source_row(title, next(iter(reports.values()))))
+        rows.extend(row(title, way, report) for way, report in reports.items())
         names.append(clip.stem)
         print(table(HEADS, rows[-len(reports) - 1 :]), flush=True)
         if options.write:
-            plot(
-                f"{clip.name}, frames {frames}", reports, RESULTS / "coherence" / f"{clip.stem}.png"
-            )
-    facts = "{}x{}, {:,} triangles; {}".format(*options.size, options.triangles, machine())
+            plot(title, reports, RESULTS / "coherence" / f"{clip.stem}.png")
+    facts = "{}x{}, {:,} triangles".format(*options.size, options.triangles)
     text = f"{facts}.\n\n{table(HEADS, rows)}"
     print(f"\n{text}")
     if options.write:

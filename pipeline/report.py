@@ -166,11 +166,11 @@ def _coherence_rows(coherence: Coherence) -> Iterator[tuple[str, ...]]:
 
 
 def _track_rows(track: TrackFigures) -> Iterator[tuple[str, ...]]:
-    yield "track", "per step"
-    yield "births", *_figures(track.births)
-    yield "deaths", *_figures(track.deaths)
-    yield "flips", *_figures(track.flips)
-    yield "pop energy [1e-3]", *_figures(track.pop_energy, scale=SMALL)
+    yield "track", ""
+    yield "births per step", *_figures(track.births)
+    yield "deaths per step", *_figures(track.deaths)
+    yield "flips per step", *_figures(track.flips)
+    yield "pop energy per step [1e-3]", *_figures(track.pop_energy, scale=SMALL)
     yield "jitter [px]", *_figures(track.jitter)
     yield "median life of a triangle [frames]", *_figures(track.median_life)
     yield "inverted triangles in all", str(track.inverted)
@@ -185,6 +185,6 @@ def _aligned(rows: Iterable[Sequence[str]]) -> str:
     listed = [tuple(row) for row in rows]
     width = max(len(row[0]) for row in listed)
     return "\n".join(
-        f"{label:<{width}}" + "".join(f"{figure:>11}" for figure in figures)
+        (f"{label:<{width}}" + "".join(f"{figure:>11}" for figure in figures)).rstrip()
         for label, *figures in listed
     )

@@ -41,7 +41,7 @@ def visible(forward: np.ndarray, backward: np.ndarray) -> np.ndarray:
 
 def _squares(vectors: np.ndarray) -> np.ndarray:
     """Squared lengths, [H, W]."""
-    return np.square(vectors).sum(axis=2)
+    return vectors[..., 0] ** 2 + vectors[..., 1] ** 2
 
 
 def _gradient(motion: np.ndarray) -> np.ndarray:

@@ -4,8 +4,9 @@ import numpy as np
 
 from stages.metrics.motion import Motion
 from stages.metrics.warp import warped
+from warp_kernels.color_model import CHANNELS
 
-WHITE = np.float32(255.0)
+WHITE = 255.0
 """Code value of the colour 1."""
 
 
@@ -26,6 +27,6 @@ def warp_error(earlier: np.ndarray, later: np.ndarray, motion: Motion) -> float 
     seen = motion.visible
     if not seen.any():
         return None
-    brought = warped(later.astype(np.float32), motion.steps)
-    difference = (brought[seen] - earlier[seen]) / WHITE
-    return float(np.mean(np.square(difference), dtype=np.float64))
+    difference = warped(later.astype(np.float32), motion.steps) - earlier.astype(np.float32)
+    squares = np.einsum("hwc,hwc->hw", difference, difference)[seen]
+    return float(squares.mean(dtype=np.float64) / (CHANNELS * WHITE**2))
