@@ -55,8 +55,22 @@ def colors_at_centres(mesh: Mesh, model: ColorModel, coefficients: np.ndarray) -
     Returns:
         Colours, not clipped [code values], [T, 3].
     """
+    centres = mesh.vertices[mesh.triangles].mean(axis=1)
+    return colors_at(model, coefficients, centres)
+
+
+def colors_at(model: ColorModel, coefficients: np.ndarray, points: np.ndarray) -> np.ndarray:
+    """Values of some colour polynomials, each at a point.
+
+    Args:
+        model: Fixes the terms.
+        coefficients: Those of a triangle for every point, [N, 3, K].
+        points: Positions [px], [N, 2].
+
+    Returns:
+        Colours, not clipped [code values], [N, 3].
+    """
     if model.degree == 0:
         return coefficients[:, :, 0]
-    centres = mesh.vertices[mesh.triangles].mean(axis=1)
-    terms = np.prod(centres[:, None, :] ** np.array(model.exponents), axis=2)
+    terms = np.prod(points[:, None, :] ** np.array(model.exponents), axis=2)
     return np.einsum("tck,tk->tc", coefficients, terms)
