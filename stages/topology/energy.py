@@ -27,6 +27,8 @@ CALM_SLIVER_HEIGHT = 0.3
 """In a followed picture triangles thinner than this collapse [px]; a higher bar would make those
 that hover about it come and go."""
 
+SLIVER_ROUNDS = 3
+"""Rounds in which slivers collapse; with one alone some starts end in worse places."""
 GROWING = 0.02
 """Where more than this part of the triangles is missing, flips come before all else and no vertex
 moves elsewhere."""
@@ -61,7 +63,8 @@ class Energy:
         """
         appraiser.limit_area(goal.largest_area)
         mesh = divide_large(mesh, goal.largest_area)
-        mesh = collapse_slivers(mesh, CALM_SLIVER_HEIGHT if goal.calm else SLIVER_HEIGHT)
+        thin = CALM_SLIVER_HEIGHT if goal.calm else SLIVER_HEIGHT
+        mesh = collapse_slivers(mesh, thin, most_rounds=SLIVER_ROUNDS)
         free = np.ones(mesh.triangle_count, dtype=bool)
         flips = ranked_flips(mesh, appraiser, self.calm_flip if goal.calm else 0.0)
         flips = flips[independent_flips(mesh, flips)]
@@ -82,7 +85,7 @@ class Energy:
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Edges worth splitting, what each saves per new triangle, and the places; best first."""
         missing = max(0, goal.count - mesh.triangle_count)
-        most = missing + 2 * self._relocations(mesh, goal)
+        most = (missing + 1) // 2 + self._relocations(mesh, goal)
         edges, gains, points = ranked_splits(mesh, appraiser, most)
         wanted = gains > LEAST_GAIN
         if goal.threshold is not None:
