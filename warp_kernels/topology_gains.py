@@ -75,6 +75,16 @@ def corner_before(half_edge: int) -> int:
     return half_edge - half_edge % 3 + (half_edge + 2) % 3
 
 
+@wp.func
+def split_place(
+    a: wp.vec2d, b: wp.vec2d, c: wp.vec2d, d: wp.vec2d, share: wp.float64, lift: wp.float64
+) -> wp.vec2d:
+    """One of `SPLIT_PLACES` on the edge a b or beside it, towards c or d [px]."""
+    zero = wp.float64(0.0)
+    m = a + share * (b - a)
+    return m + wp.max(lift, zero) * (c - m) + wp.max(-lift, zero) * (d - m)
+
+
 @cache
 def _flip_kernel(layout: MomentLayout) -> Any:
     types = moment_types(layout)
@@ -233,17 +243,11 @@ def _split_kernel(layout: MomentLayout) -> Any:
         point = wp.float64(0.5) * (a + b)
         for place in range(wp.static(len(SPLIT_PLACES))):
             lift = wp.float64(wp.static(SPLIT_PLACES[place][1]))
-            m = a + wp.float64(wp.static(SPLIT_PLACES[place][0])) * (b - a)
-            if wp.static(SPLIT_PLACES[place][1] > 0.0):
-                m = m + lift * (c - m)
-            if wp.static(SPLIT_PLACES[place][1] < 0.0):
-                m = m - lift * (d - m)
-            possible = allowed(a, m, c, limits) and allowed(m, b, c, limits)
+            m = split_place(a, b, c, d, wp.float64(wp.static(SPLIT_PLACES[place][0])), lift)
+            possible = twin >= 0 or lift == wp.float64(0.0)  # a border vertex lies on the border
             if twin >= 0:
-                possible = possible and allowed(m, a, d, limits) and allowed(b, m, d, limits)
-            elif wp.static(SPLIT_PLACES[place][1] != 0.0):
-                possible = False
-            if possible:
+                possible = allowed(m, a, d, limits) and allowed(b, m, d, limits)
+            if possible and allowed(a, m, c, limits) and allowed(m, b, c, limits):
                 am = along(a, m, table, powers, height)
                 mb = along(m, b, table, powers, height)
                 mc = along(m, c, table, powers, height)
