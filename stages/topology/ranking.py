@@ -10,6 +10,8 @@ LEAST_GAIN = 1.0
 """Changes that save less than this are rounding [code value^2 px]."""
 EXAMINED = 8
 """Candidates measured for each one wanted: some are illegal or touch each other."""
+LEAST_EXAMINED = 100
+"""Splits measured at least: where few are wanted all of eight may touch other changes."""
 
 
 def ranked_flips(mesh: Mesh, appraiser: Appraiser, least_share: float) -> np.ndarray:
@@ -50,7 +52,8 @@ def ranked_splits(
     twins = mesh.twins[edges]
     added = np.where(twins >= 0, 2, 1)
     beside = energies[edges // 3] + np.where(twins >= 0, energies[twins // 3], 0.0)
-    likely = np.argsort(-beside / added, kind="stable")[: EXAMINED * most]
+    examined = max(EXAMINED * most, LEAST_EXAMINED)
+    likely = np.argsort(-beside / added, kind="stable")[:examined]
     edges = edges[likely]
     gains, points = appraiser.split_gains(edges)
     gains = gains / added[likely]
