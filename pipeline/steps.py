@@ -76,7 +76,7 @@ def steps(
         info: The source.
         job: Says what is wanted and how motion is estimated.
         reached: Where an earlier run ended, or None.
-        notes: Receives a sentence if the range begins inside a shot.
+        notes: Receives a sentence if a track begins inside a shot.
     """
     before: Frame | None = None
     shot = None if reached is None else reached.shot
@@ -85,7 +85,7 @@ def steps(
         frame = shot_frame.frame
         if holds(job.frame_range, frame, info) and (reached is None or frame.index > reached.frame):
             joined = before is not None and before.index == last
-            if not (joined or shot_frame.opens_shot or job.independent):
+            if job.track is not None and not (joined or shot_frame.opens_shot or job.independent):
                 notes.append(_restart(frame.index))
             if shot is None or shot_frame.opens_shot or not joined:
                 shot = frame.index

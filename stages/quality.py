@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from math import log, sqrt
 
 from stages.mesh import Mesh
 from warp_kernels.errors import OptionError
@@ -10,6 +11,8 @@ FIRST_GUESS = 500
 """Triangles of the first trial."""
 FALL = 0.4
 """The rmse falls about as the number of triangles to the power of minus this."""
+LEAST_FALL = 0.05
+"""Smallest power that is believed: where luck decides the rmse hardly falls at all."""
 PRECISION = 0.01
 """The search ends when the number is known to this part of it: where luck decides, not number."""
 MOST_TRIALS = 12
@@ -48,34 +51,55 @@ def smallest_that_reaches(
     """
     most = max(least, pixels // PIXELS_PER_TRIANGLE)
     count = min(max(FIRST_GUESS, least), most)
-    missed = least - 1
+    missed: tuple[int, float] | None = None
     best: Trial | None = None
     for _ in range(MOST_TRIALS):
         trial = attempt(count)
         if trial.rmse > rmse:
             if count >= most:
                 raise _out_of_reach(rmse, trial, count)
-            missed = max(missed, count)
-        else:
-            best = trial if best is None or count < best.mesh.triangle_count else best
-        reached = most if best is None else min(best.mesh.triangle_count, most)
-        if best is not None and reached - missed <= max(1, PRECISION * reached):
+            if missed is None or count > missed[0]:
+                missed = (count, trial.rmse)
+        elif best is None or trial.mesh.triangle_count < best.mesh.triangle_count:
+            best = trial
+        low = least - 1 if missed is None else missed[0]
+        high = most + 1 if best is None else best.mesh.triangle_count
+        if best is not None and high - low <= max(1, PRECISION * high):
             break
-        # aim a little above the number that the power law says, which is then likely the answer
-        aim = count * (max(trial.rmse, 1e-9) / rmse) ** (1 / FALL) * (1 + PRECISION / 3)
-        count = _between(aim, missed, reached if best is not None else most + 1)
+        aim = _crossing(rmse, (count, trial.rmse), missed, best)
+        # from below aim above and from above below: the next trial closes in from the other side
+        aim *= 1 - 0.7 * PRECISION if trial.rmse <= rmse else 1 + 0.4 * PRECISION
+        if missed is None or best is None:
+            count = int(min(max(round(aim), low + 1), high - 1))
+        else:
+            count = _within(aim, low, high)
     if best is None:
         raise _out_of_reach(rmse, trial, count)
     return best.mesh
 
 
-def _between(aim: float, missed: int, reached: int) -> int:
-    """The number nearest to an aim that is more than what misses and less than what reaches."""
-    return int(min(max(round(min(aim, reached)), missed + 1), reached - 1))
+def _crossing(
+    rmse: float, last: tuple[int, float], missed: tuple[int, float] | None, best: Trial | None
+) -> float:
+    """The number that should have an rmse, by a power law through what is known."""
+    count, found = last
+    fall = FALL
+    if missed is not None and best is not None and best.rmse > 0:
+        fall = log(missed[1] / best.rmse) / log(best.mesh.triangle_count / missed[0])
+    return float(count * (max(found, 1e-9) / rmse) ** (1 / max(fall, LEAST_FALL)))
+
+
+def _within(aim: float, low: int, high: int) -> int:
+    """The aim, or the middle of what is left where it would cut off too little of much."""
+    if high - low > 16 * PRECISION * high:
+        margin = (high - low) / 8
+        if not low + margin <= aim <= high - margin:
+            aim = sqrt(max(low, 1) * high)
+    return int(min(max(round(aim), low + 1), high - 1))
 
 
 def _out_of_reach(rmse: float, trial: Trial, count: int) -> OptionError:
     return OptionError(
         f"--quality {rmse:g}: out of reach, {count} triangles still have an rmse of "
-        f"{trial.rmse:.3g}; ask for {trial.rmse * 1.02:.2g} or more, or for --color linear"
+        f"{trial.rmse:.3g}; ask for {trial.rmse * 1.02:.2g} or more"
     )
