@@ -2,7 +2,9 @@
 
 import numpy as np
 
-from stages.snapshot import Snapshot, colors_at_centres
+from stages.fading import Fading
+from stages.paint import paint_of
+from stages.snapshot import Snapshot
 from warp_kernels.canvas import Canvas
 from warp_kernels.device import Device
 from warp_kernels.errors import OptionError
@@ -36,29 +38,24 @@ class Renderer:
             )
         self._canvas = Canvas(device, picture, output, styles)
 
-    def render(self, snapshot: Snapshot) -> np.ndarray:
+    def render(self, snapshot: Snapshot, fading: Fading | None = None) -> np.ndarray:
         """Draw a snapshot.
+
+        Args:
+            snapshot: What to draw.
+            fading: What lingers of the frames before it, if anything; it ends with the snapshot.
 
         Returns:
             Code values, [rows, columns, 3] uint8.
         """
         mesh = snapshot.mesh
-        centres = mesh.vertices[mesh.triangles].mean(axis=1)
-        colors = colors_at_centres(mesh, snapshot.model, snapshot.coefficients)
+        paint, layers = (paint_of(snapshot), None) if fading is None else fading.layers()
         return self._canvas.draw(
             vertices=mesh.vertices,
             triangles=mesh.triangles,
             edges=mesh.edge_vertices,
-            colors=np.clip(colors, 0.0, 255.0),
-            gradients=_gradients(snapshot),
-            centres=centres,
+            colors=paint.colors,
+            gradients=paint.gradients,
+            centres=paint.centres,
+            layers=layers,
         )
-
-
-def _gradients(snapshot: Snapshot) -> np.ndarray:
-    """Linear part of the colours [code values / px], [T, 2, 3]."""
-    coefficients, model = snapshot.coefficients, snapshot.model
-    if model.degree == 0:
-        return np.zeros((len(coefficients), 2, 3))
-    slopes = coefficients[:, :, [model.term(1, 0), model.term(0, 1)]]
-    return slopes.transpose(0, 2, 1)
