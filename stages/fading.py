@@ -46,12 +46,14 @@ class Origins:
 class Vanished:
     """The triangles that went with one step, as they were in the frame before."""
 
-    corners: np.ndarray
-    """Positions, ascending by vertex id [px], [G, 3, 2]."""
+    lines: np.ndarray
+    """Their sides, as `Layers` has them, [G, 3, 3]."""
     paint: Paint
     """Their colours."""
     origins: Origins
     """Where they came from themselves."""
+    maps: np.ndarray
+    """The way there, as `Layers` has it, for those that were fading; [G, 2, 3]."""
     links: np.ndarray
     """For one new triangle of the step after the other, which of these it lies over; [L]."""
 
@@ -101,7 +103,9 @@ class Fading:
         origins = self.origins.of(kept)
         vanished = {s: batch for s, batch in self.vanished.items() if step - s < self.frames}
         born = np.flatnonzero(kept < 0)
-        gone = np.setdiff1d(np.arange(self.mesh.triangle_count), kept)
+        stays = np.zeros(self.mesh.triangle_count + 1, dtype=bool)
+        stays[kept] = True  # the last place is that of -1
+        gone = np.flatnonzero(~stays[:-1])
         if self.frames and len(born) and len(gone):
             corners = self.mesh.vertices[by_vertex_id(self.mesh, gone)]
             before = _before(self.mesh, mesh)[by_vertex_id(mesh, born)]
@@ -109,7 +113,7 @@ class Fading:
             covers = spans[:, 1] > spans[:, 0]
             origins.births[born] = np.where(covers, step, MATURE)
             origins.corners[born], origins.spans[born] = before, spans
-            vanished[step] = Vanished(corners, self.paint.of(gone), self.origins.of(gone), links)
+            vanished[step] = self._vanished(gone, corners, links)
         return replace(
             self,
             step=step,
@@ -118,6 +122,14 @@ class Fading:
             origins=origins,
             vanished=vanished,
         )
+
+    def _vanished(self, gone: np.ndarray, corners: np.ndarray, links: np.ndarray) -> Vanished:
+        """What is kept of the triangles that go with the next step."""
+        origins = self.origins.of(gone)
+        fading = np.flatnonzero(self._is_young(origins))
+        maps = np.zeros((len(gone), 2, 3))
+        maps[fading] = _maps(corners[fading], origins.corners[fading])
+        return Vanished(_lines(corners), self.paint.of(gone), origins, maps, links)
 
     def layers(self) -> tuple[Paint, Layers | None]:
         """What is drawn: the colours of all layers, and how they lie over each other.
@@ -129,26 +141,29 @@ class Fading:
         if len(young) == 0:
             return self.paint, None
         batches = [self.vanished[step] for step in sorted(self.vanished)]
-        sizes = [self.mesh.triangle_count, *(len(batch.corners) for batch in batches)]
+        sizes = [self.mesh.triangle_count, *(len(batch.lines) for batch in batches)]
         begins = np.cumsum(sizes) - sizes
-        weights = np.ones(sum(sizes), np.float32)
-        maps = np.zeros((sum(sizes), 2, 3), np.float32)
-        spans = np.zeros((sum(sizes), 2), np.int32)
-        lines = np.zeros((sum(sizes), 3, 3), np.float32)
         links, link_begins = self._links(batches, begins[1:])
-        own = self.mesh.vertices[by_vertex_id(self.mesh, young)]
-        parts = [(young, own, self.origins.of(young))]
+        table = Layers(
+            weights=np.ones(sum(sizes), np.float32),
+            maps=np.zeros((sum(sizes), 2, 3), np.float32),
+            spans=np.zeros((sum(sizes), 2), np.int32),
+            links=links,
+            lines=np.zeros((sum(sizes), 3, 3), np.float32),
+        )
+        own, origins = self.mesh.vertices[by_vertex_id(self.mesh, young)], self.origins.of(young)
+        parts = [(young, origins, _maps(own, origins.corners))]
         for begin, batch in zip(begins[1:], batches, strict=True):
-            lines[begin : begin + len(batch.corners)] = _lines(batch.corners)
+            table.lines[begin : begin + len(batch.lines)] = batch.lines
             fading = np.flatnonzero(self._is_young(batch.origins))
-            parts.append((begin + fading, batch.corners[fading], batch.origins.of(fading)))
-        for layers, corners, origins in parts:
-            maps[layers] = found = _maps(corners, origins.corners)
-            age = (self.step - origins.births + 1) / (self.frames + 1)
-            weights[layers] = _opacity(age + _stretch(found) / STRETCH)
-            spans[layers] = origins.spans + link_begins[self.step - origins.births][:, None]
-        paint = joined_paint([self.paint, *(batch.paint for batch in batches)])
-        return paint, Layers(weights, maps, spans, links, lines)
+            parts.append((begin + fading, batch.origins.of(fading), batch.maps[fading]))
+        for layers, origins, maps in parts:
+            ages = self.step - origins.births
+            share = (ages + 1) / (self.frames + 1) + _stretch(maps) / STRETCH
+            table.weights[layers] = _opacity(share)
+            table.maps[layers] = maps
+            table.spans[layers] = origins.spans + link_begins[ages][:, None]
+        return joined_paint([self.paint, *(batch.paint for batch in batches)]), table
 
     def _is_young(self, origins: Origins) -> np.ndarray:
         """Which triangles are not opaque yet, [N] bool."""

@@ -115,14 +115,16 @@ def fading_look(color_at: Any) -> Any:
             )
             point = wp.vec3f(here.position[0], here.position[1], 1.0)
             span = layers.spans[here.triangle]
-            # The deepest one: beyond the outline of all of them that is the nearest.
+            # The one that holds the point; beyond the outline of all of them the nearest.
             here.triangle = layers.links[span[0]]
             deepest = depth_inside(layers, here.triangle, point)
-            for place in range(span[0] + 1, span[1]):
+            place = span[0] + 1
+            while place < span[1] and deepest <= 0.0:
                 depth = depth_inside(layers, layers.links[place], point)
                 if depth > deepest:
                     deepest = depth
                     here.triangle = layers.links[place]
+                place += 1
             clear = wp.min(clear, deepest)
             weight = layers.weights[here.triangle]
             color += seen * weight * color_at(scene, parameters, here)

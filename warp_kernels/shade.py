@@ -88,8 +88,8 @@ def _shade_kernel(shaders: tuple[Any, ...], samples: int, fades: bool) -> Any:
         )
         here = Sample()
         here.row = row
-        # farther than a pixel's corner is from its centre, also where a map stretches a little
-        near = wp.length(picture_per_sample) * wp.static(float(samples))
+        # as far as a pixel's corner is from its centre, also where a map stretches by a quarter
+        near = wp.length(picture_per_sample) * wp.static(0.625 * samples)
         column = int(0)
         while column < canvas_out.shape[1]:
             first = column * wp.static(samples)
