@@ -149,7 +149,7 @@ class Canvas:
         tables.maps = self._empty(layers, Affine)
         tables.spans = self._empty(layers, wp.vec2i)
         tables.links = self._empty(links, int)
-        tables.lines = self._empty((layers, 3), wp.vec3f)
+        tables.lines = self._empty(layers, wp.mat33f)
         self._layers = tables
         self._recorded: dict[bool, list[tuple[int, Phase, Phase]]] = {}
         self._edge_drawing = record_edge_coverage(

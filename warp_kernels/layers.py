@@ -48,15 +48,14 @@ class LayerTables:
     maps: wp.array(dtype=Affine)
     spans: wp.array(dtype=wp.vec2i)
     links: wp.array(dtype=int)
-    lines: wp.array2d(dtype=wp.vec3f)
+    lines: wp.array(dtype=wp.mat33f)
 
 
 @wp.func
-def depth_inside(layers: LayerTables, layer: int, point: wp.vec3f) -> float:
+def depth_inside(lines: wp.mat33f, point: wp.vec3f) -> float:
     """Distance to the nearest side of a layer [px], negative outside."""
-    first = wp.dot(layers.lines[layer, 0], point)
-    second = wp.dot(layers.lines[layer, 1], point)
-    return wp.min(wp.min(first, second), wp.dot(layers.lines[layer, 2], point))
+    distances = lines * point
+    return wp.min(wp.min(distances[0], distances[1]), distances[2])
 
 
 @cache
@@ -117,10 +116,10 @@ def fading_look(color_at: Any) -> Any:
             span = layers.spans[here.triangle]
             # The one that holds the point; beyond the outline of all of them the nearest.
             here.triangle = layers.links[span[0]]
-            deepest = depth_inside(layers, here.triangle, point)
+            deepest = depth_inside(layers.lines[here.triangle], point)
             place = span[0] + 1
             while place < span[1] and deepest <= 0.0:
-                depth = depth_inside(layers, layers.links[place], point)
+                depth = depth_inside(layers.lines[layers.links[place]], point)
                 if depth > deepest:
                     deepest = depth
                     here.triangle = layers.links[place]
