@@ -40,18 +40,51 @@ def _columns(triangles: np.ndarray) -> np.ndarray:
 
 def _boxes_that_meet(first: np.ndarray, second: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Pairs of triangles whose bounding boxes overlap, ascending."""
-    low, high = (bound(_columns(first), axis=0) for bound in (np.min, np.max))
-    others_low, others_high = (bound(_columns(second), axis=0) for bound in (np.min, np.max))
-    order = np.argsort(others_low[0], kind="stable")
-    others_low, others_high = others_low[:, order], others_high[:, order]
-    # Sorted by their left ends, those that can reach a box stand together.
-    widest = (others_high[0] - others_low[0]).max()
-    begins = np.searchsorted(others_low[0], low[0] - widest)
-    counts = np.searchsorted(others_low[0], high[0]) - begins
-    ones = np.repeat(np.arange(len(first)), counts)
-    others = np.arange(len(ones)) - np.repeat(np.cumsum(counts) - counts, counts) + begins[ones]
+    low, high = _bounds(first)
+    others_low, others_high = _bounds(second)
+    # Cells about as large as two triangles: a box lies in a few, also where some boxes are wide.
+    across = max(1, int(np.sqrt(len(second) / 2)))
+    begin = others_low.min(axis=1)[:, None]
+    size = np.maximum(others_high.max(axis=1)[:, None] - begin, 1e-9) / across
+
+    def cells_of(bounds: tuple[np.ndarray, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+        """The cells of some boxes."""
+        low, high = (np.clip((bound - begin) // size, 0, across - 1) for bound in bounds)
+        return _cells(low.astype(np.int64), high.astype(np.int64), across)
+
+    ones, cells = cells_of((low, high))
+    others, other_cells = cells_of((others_low, others_high))
+    order = np.argsort(other_cells, kind="stable")
+    begins, ends = (np.searchsorted(other_cells[order], cells, side) for side in ("left", "right"))
+    places, within = _ragged(ends - begins)
+    ones, others = ones[places], others[order[begins[places] + within]]
     meet = (others_low[:, others] < high[:, ones]) & (low[:, ones] < others_high[:, others])
-    meet = meet[0] & meet[1]
-    ones, others = ones[meet], order[others[meet]]
-    sorted_pairs = np.lexsort((others, ones))
-    return ones[sorted_pairs], others[sorted_pairs]
+    met = meet[0] & meet[1]
+    pairs = np.unique(ones[met] * len(second) + others[met])
+    return pairs // len(second), pairs % len(second)
+
+
+def _bounds(triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Upper left and lower right corners of bounding boxes [px], each [2, N]."""
+    columns = _columns(triangles)
+    return columns.min(axis=0), columns.max(axis=0)
+
+
+def _cells(low: np.ndarray, high: np.ndarray, across: int) -> tuple[np.ndarray, np.ndarray]:
+    """All cells that each box lies in: numbers of boxes [M] and of cells [M].
+
+    Args:
+        low: First column and row of each box, [2, N].
+        high: Last column and row, [2, N].
+        across: Cells in a row.
+    """
+    columns, rows = high - low + 1
+    boxes, within = _ragged(columns * rows)
+    row, column = np.divmod(within, columns[boxes])
+    return boxes, (low[1, boxes] + row) * across + low[0, boxes] + column
+
+
+def _ragged(counts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """For `counts[i]` entries of each i: the i of every entry, and its number among these."""
+    owners = np.repeat(np.arange(len(counts)), counts)
+    return owners, np.arange(len(owners)) - np.repeat(np.cumsum(counts) - counts, counts)

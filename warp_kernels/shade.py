@@ -45,6 +45,26 @@ def _stack(shaders: tuple[Any, ...]) -> Any:
 
 
 @wp.func
+def is_whole(line: wp.array(dtype=int), first: int, width: int, last: int) -> bool:
+    """Whether one triangle holds all samples of a pixel.
+
+    One that holds the four outermost samples holds those between: it is convex.
+
+    Args:
+        line: Triangles of the samples of a row of pixels.
+        first: Place of the pixel's first sample.
+        width: Samples in a row.
+        last: Samples of a pixel, across and down each, less one.
+    """
+    triangle = line[first]
+    below = first + last * width
+    differing = triangle ^ line[first + last]
+    differing = differing | (triangle ^ line[below])
+    differing = differing | (triangle ^ line[below + last])
+    return differing == 0
+
+
+@wp.func
 def to_code_values(color: wp.vec3f) -> wp.vec3ub:
     """Round a colour to code values."""
     return wp.vec3ub(
@@ -95,20 +115,12 @@ def _shade_kernel(shaders: tuple[Any, ...], samples: int, fades: bool) -> Any:
             first = column * wp.static(samples)
             here.column = column
             here.triangle = line[first]
-            # a triangle that holds the four outermost samples holds those between: it is convex
-            right = first + wp.static(samples - 1)
-            below = wp.static(samples - 1) * width
-            differing = here.triangle ^ line[right]
-            differing = differing | (here.triangle ^ line[below + first])
-            differing = differing | (here.triangle ^ line[below + right])
             color = wp.vec3f()
             clear = float(0.0)
-            if differing == 0:
+            if is_whole(line, first, width, wp.static(samples - 1)):
                 centre = wp.static(0.5 * samples)
-                here.position = wp.vec2f(
-                    (float(first) + centre) * picture_per_sample[0],
-                    (float(first_row) + centre) * picture_per_sample[1],
-                )
+                at = wp.vec2f(float(first) + centre, float(first_row) + centre)
+                here.position = wp.cw_mul(at, picture_per_sample)
                 seen = look(scene, parameters, layers, here)
                 color = wp.vec3f(seen[0], seen[1], seen[2])
                 clear = seen[3]
@@ -117,10 +129,8 @@ def _shade_kernel(shaders: tuple[Any, ...], samples: int, fades: bool) -> Any:
                 for i in range(wp.static(samples)):
                     for j in range(wp.static(samples)):
                         here.triangle = line[i * width + first + j]
-                        here.position = wp.vec2f(
-                            (float(first + j) + 0.5) * picture_per_sample[0],
-                            (float(first_row + i) + 0.5) * picture_per_sample[1],
-                        )
+                        at = wp.vec2f(float(first + j) + 0.5, float(first_row + i) + 0.5)
+                        here.position = wp.cw_mul(at, picture_per_sample)
                         seen = look(scene, parameters, layers, here)
                         color += wp.vec3f(seen[0], seen[1], seen[2])
                 color = color * wp.static(1.0 / (samples * samples))
