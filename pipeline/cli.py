@@ -151,16 +151,17 @@ def run_info(arguments: argparse.Namespace) -> None:
 
 
 def run_measure(arguments: argparse.Namespace) -> None:
-    """Print how close an output is to its source.
+    """Print how close an output is to its source, and how coherent.
 
     Args:
         arguments: What the user gave.
     """
     from pipeline.build_job import frame_range
-    from pipeline.report import measure
+    from pipeline.measure import measure
 
+    track = None if arguments.track is None else Path(arguments.track)
     wanted = frame_range(vars(arguments))
-    report = measure(Path(arguments.source), Path(arguments.output), wanted)
+    report = measure(Path(arguments.source), Path(arguments.output), wanted, track)
     print(report.as_json() if arguments.json else report.as_table())
 
 

@@ -116,7 +116,7 @@ class Job:
     )
     """Size of the output relative to the source, or None."""
     blend: int = field(
-        default=4,
+        default=0,
         metadata={
             "help": "frames over which triangles fade in where they replace others, 0 for at once",
             "group": "look",

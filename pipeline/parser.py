@@ -30,7 +30,7 @@ commands:
   plan INPUT                 ranges of whole shots, for runs on several machines
   join A.mtrk B.mtrk ... -o OUT.mtrk   put the tracks of ranges together
   info FILE                  what a file is: a source or a mesh track
-  measure SOURCE OUTPUT      how close an output is to its source
+  measure SOURCE OUTPUT      how close an output is to its source, and how coherent
 
 trimotion COMMAND --help tells the options of a command.
 
@@ -216,12 +216,19 @@ def _add_measure(commands: Any) -> None:
     parser = _command(
         commands,
         "measure",
-        "Compare an output with its source: rmse [code values], PSNR and R (Eq. 12).",
-        "trimotion measure SOURCE OUTPUT [--json]",
+        "Compare an output with its source: rmse [code values], PSNR, R (Eq. 12), E_warp and tOF; "
+        "with a track also what its meshes do.",
+        "trimotion measure SOURCE OUTPUT [--track JOB.mtrk] [--json]",
         "",
     )
     parser.add_argument("source", metavar="SOURCE", type=text_value, help="what was converted")
     parser.add_argument("output", metavar="OUTPUT", type=text_value, help="what came out")
+    parser.add_argument(
+        "--track",
+        metavar="JOB.mtrk",
+        type=text_value,
+        help="what the output was drawn from; its frames are compared if no range is given",
+    )
     parser.add_argument("--json", action="store_true", help="print JSON, with every frame")
     add_range_options(parser)
 

@@ -25,7 +25,7 @@ class Appraiser:
         self.colors = np.zeros((0, 3))
         """Colour at the centre of each triangle of the measured mesh [code values], [T, 3]."""
         self.counts = np.zeros(0, dtype=np.int64)
-        """Pixels of each triangle of the measured mesh, [T]."""
+        """Pixels of each triangle of the measured mesh, or the sum of their weights, [T]."""
 
     def energies(self, mesh: Mesh) -> np.ndarray:
         """Take a mesh and measure it.

@@ -9,26 +9,36 @@ from stages.edits import (
     flippable,
     independent_collapses,
     independent_flips,
+    press_onto_border,
+    pressable,
 )
 from stages.edits.collapse_edges import collapsed_heights
 from stages.edits.flip_edges import flipped_heights
-from stages.edits.neighbourhood import edge_ends, edge_triangles
-from stages.mesh import Mesh
+from stages.edits.independent import first_come
+from stages.edits.neighbourhood import edge_ends, edge_triangles, stars
+from stages.mesh import Mesh, previous_corner
+
+MOST_ROUNDS = 1000
+"""More rounds than any mesh needs."""
 
 
-def collapse_slivers(mesh: Mesh, min_height: float, min_area: float = 0.0) -> Mesh:
+def collapse_slivers(
+    mesh: Mesh, min_height: float, min_area: float = 0.0, *, most_rounds: int = MOST_ROUNDS
+) -> Mesh:
     """Collapse thin and small triangles on their shortest edges, thinnest first.
 
-    Either end may move into the other: the direction is taken that leaves the highest triangles
-    behind. A collapse may leave a triangle below `min_height` only if the star that it changes
-    held a lower one that survives. Where no sliver can be collapsed, their longest edges are
-    flipped if that raises the lower triangle of the pair; where that fails as well, the middle
-    edges collapse. What nothing mends stays.
+    Those that lie flat on the border are pressed onto it. Of an edge either end may move into the
+    other: the direction is taken that leaves the highest triangles behind. A collapse may leave a
+    triangle below `min_height` only if the star that it changes held a lower one that survives.
+    Where no sliver can be collapsed, their longest edges are flipped if that raises the lower
+    triangle of the pair; where that fails as well, the middle edges collapse. What nothing mends
+    stays.
 
     Args:
         mesh: A valid mesh.
         min_height: Triangles of a smallest height below this go [px].
         min_area: Triangles of an area below this go [px^2].
+        most_rounds: Rounds of edits; few are enough for a mesh that is soon looked at again.
 
     Returns:
         A valid mesh with as many triangles or fewer; the same object if nothing is to be done.
@@ -39,17 +49,38 @@ def collapse_slivers(mesh: Mesh, min_height: float, min_area: float = 0.0) -> Me
         The middle edge is for caps along the border, which have no partner for a flip.
     """
     # Every round removes triangles or raises the lowest heights, so the rounds end.
-    while True:
+    for _ in range(most_rounds):
         slivers = np.flatnonzero((mesh.heights < min_height) | (mesh.areas < min_area))
         slivers = slivers[np.argsort(mesh.heights[slivers], kind="stable")]
-        mended = _collapse(mesh, slivers, 0, min_height)
+        mended = _press(mesh, slivers, min_height)
+        if mended is mesh:
+            mended = _collapse(mesh, slivers, 0, min_height)
         if mended is mesh:
             mended = _flip_longest(mesh, slivers)
         if mended is mesh:
             mended = _collapse(mesh, slivers, 1, min_height)
         if mended is mesh:
-            return mesh
+            break
         mesh = mended
+    return mesh
+
+
+def _press(mesh: Mesh, slivers: np.ndarray, min_height: float) -> Mesh:
+    """Press those onto the border whose longest edge lies there.
+
+    Args:
+        mesh: A valid mesh.
+        slivers: Triangle numbers, shape [S], the most urgent first.
+        min_height: Height that the triangles around keep [px].
+    """
+    longest = 3 * slivers + _lengths(mesh, slivers).argmax(axis=1)
+    longest = longest[mesh.twins[longest] < 0]
+    if not len(longest):
+        return mesh
+    longest = longest[pressable(mesh, longest, min_height)]
+    places, corners = stars(mesh, mesh.triangles.reshape(-1)[previous_corner(longest)])
+    chosen = first_come(places, corners // 3, len(longest), mesh.triangle_count)
+    return press_onto_border(mesh, longest[chosen]) if chosen.any() else mesh
 
 
 def _collapse(mesh: Mesh, slivers: np.ndarray, rank: int, min_height: float) -> Mesh:

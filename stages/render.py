@@ -56,6 +56,7 @@ class Renderer:
             edges=mesh.edge_vertices,
             colors=paint.colors,
             gradients=paint.gradients,
+            curvatures=paint.curvatures,
             centres=paint.centres,
             layers=layers,
         )

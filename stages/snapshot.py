@@ -29,21 +29,19 @@ class Snapshot:
     in the order of `model.exponents` [code value / px^(a + b)], shape [T, 3, K] float64."""
     energies: np.ndarray
     """E(T) of Eq. 4 [code value^2 px], of RGB whatever the space that was optimised, shape [T]
-    float64. Where pixels have weights, each error counts as much as its pixel, white fully."""
+    float64; where pixels have weights, these divided by their mean over the picture are factors
+    of the errors."""
     counts: np.ndarray
-    """Pixels covered, shape [T] int64."""
-    weight: float | None = None
-    """Sum of the pixels' weights in units of white, or None where every pixel counts alike."""
+    """Pixels covered, or the sum of their weights up to a common factor, shape [T] int64."""
 
     @property
     def rmse(self) -> float:
         """Root mean square error over pixels and channels [code values].
 
         The colours are clipped to 0..255 only when they are drawn, so this is the error of the
-        fit; Eq. 12's R is sqrt(3 / 2) of it. Where pixels have weights, it is the weighted mean.
+        fit; Eq. 12's R is sqrt(3 / 2) of it. Where pixels have weights the mean is weighted.
         """
-        pixels = self.mesh.width * self.mesh.height if self.weight is None else self.weight
-        samples = CHANNELS * pixels
+        samples = CHANNELS * self.mesh.width * self.mesh.height
         return float(np.sqrt(2.0 * self.energies.sum() / samples))
 
 
@@ -58,10 +56,24 @@ def colors_at_centres(mesh: Mesh, model: ColorModel, coefficients: np.ndarray) -
     Returns:
         Colours, not clipped [code values], [T, 3].
     """
+    centres = mesh.vertices[mesh.triangles].mean(axis=1)
+    return colors_at(model, coefficients, centres)
+
+
+def colors_at(model: ColorModel, coefficients: np.ndarray, points: np.ndarray) -> np.ndarray:
+    """Values of some colour polynomials, each at a point.
+
+    Args:
+        model: Fixes the terms.
+        coefficients: Those of a triangle for every point, [N, 3, K].
+        points: Positions [px], [N, 2].
+
+    Returns:
+        Colours, not clipped [code values], [N, 3].
+    """
     if model.degree == 0:
         return coefficients[:, :, 0]
-    centres = mesh.vertices[mesh.triangles].mean(axis=1)
-    terms = np.prod(centres[:, None, :] ** np.array(model.exponents), axis=2)
+    terms = np.prod(points[:, None, :] ** np.array(model.exponents), axis=2)
     return np.einsum("tck,tk->tc", coefficients, terms)
 
 

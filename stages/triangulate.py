@@ -6,7 +6,7 @@ import numpy as np
 
 from stages.appraise import Appraiser
 from stages.approximate import Approximator
-from stages.frame import WHITE, Frame
+from stages.frame import Frame
 from stages.layouts import Layout
 from stages.mesh import Mesh
 from stages.optimize import OptimizeOptions, load_mesh, optimize
@@ -22,9 +22,12 @@ from warp_kernels.errors import OptionError
 from warp_kernels.solve import SUMS
 from warp_kernels.workspace import Workspace
 
-SPRING = 1500.0
+SPRING = 2000.0
 """Strength of the temporal term [code value^2]: a vertex leaves the flow's path where the picture
 pulls harder than noise does."""
+FRAME_DISPLACEMENT = 0.5
+"""Distance of the variants in later frames [px]: a wider one finds steadier places, and beyond this
+what the last iterations of the first frame have settled would move again."""
 DEAD_BAND = 0.1
 """Steps of later frames below this are not taken [px]: noise must not move what stands still."""
 CALM_QUALITY = 0.02
@@ -119,10 +122,7 @@ class Triangulator:
         weighted: bool = False,
     ) -> None:
         self._space = SPACES[options.space]()
-        # Energies of a weighted picture are sums of weight times error: white counts 255 times.
-        self._white = WHITE if weighted else 1
-        self._scale = self._space.scale * self._white
-        self.options = _against(options, self._scale, self._white)
+        self.options = _against(options, self._space.scale)
         self._workspace = Workspace(device, size, options.model, options.sums, weighted)
         self._least = options.refine.least_count(*size)
         self._appraiser = Appraiser(self._workspace, SLIVER_HEIGHT)
@@ -176,7 +176,7 @@ class Triangulator:
         options = self.options
         self._load(frame)
         mesh = self._follow(seed, seed, options.frame_iterations // 2)
-        goal = self._goal(self._followed_count(frame, mesh), calm=True)
+        goal = self._goal(self._followed_count(mesh), calm=True)
         mesh = self._approximator.topology.adapt(mesh, self._appraiser, goal)
         mesh = self._follow(mesh, seed, options.frame_iterations - options.frame_iterations // 2)
         return self._snapshot(frame, mesh)
@@ -192,12 +192,12 @@ class Triangulator:
         load_mesh(self._workspace, mesh)
         return self._snapshot(frame, mesh)
 
-    def _followed_count(self, frame: Frame, mesh: Mesh) -> int:
+    def _followed_count(self, mesh: Mesh) -> int:
         """How many triangles a later frame shall have; a quality lets their number drift."""
         refine = self.options.refine
         if refine.quality is None:
             return refine.triangles
-        missed = self._rmse(frame, self._appraiser.energies(mesh)) / refine.quality
+        missed = self._rmse(mesh) / refine.quality
         if abs(missed - 1) < CALM_QUALITY:
             return mesh.triangle_count
         drift = min(max(missed ** (1 / FALL), 1 - MOST_DRIFT), 1 + MOST_DRIFT)
@@ -210,10 +210,15 @@ class Triangulator:
         old = np.searchsorted(seed.vertex_ids, mesh.vertex_ids)
         known = mesh.vertex_ids < seed.next_vertex_id
         springs[known, :2] = seed.vertices[old[known]]
-        springs[known, 2] = SPRING * self._scale
+        springs[known, 2] = SPRING * self._space.scale
         load_mesh(self._workspace, mesh, springs)
         return optimize(
-            self._workspace, mesh, iterations, self.options.optimize, dead_band=DEAD_BAND
+            self._workspace,
+            mesh,
+            iterations,
+            self.options.optimize,
+            dead_band=DEAD_BAND,
+            displacement=FRAME_DISPLACEMENT,
         )
 
     def _trial(self, frame: Frame, layout: Layout, rng: np.random.Generator, goal: Goal) -> Trial:
@@ -221,13 +226,12 @@ class Triangulator:
         count = self._approximator.growth(goal).count(0.0, goal.count)
         mesh = layout.build(frame.pixels, max(2, count), rng)
         mesh = self._approximator.approximate(mesh, goal)
-        return Trial(mesh, self._rmse(frame, self._appraiser.energies(mesh)))
+        return Trial(mesh, self._rmse(mesh))
 
-    def _rmse(self, frame: Frame, energies: np.ndarray) -> float:
-        """Root mean square error per channel of the picture in the workspace [code values]."""
-        pixels = frame.pixels.shape[0] * frame.pixels.shape[1]
-        weight = pixels if frame.weights is None else int(frame.weights.sum(dtype=np.int64))
-        return float(np.sqrt(2.0 * energies.sum() / (CHANNELS * weight)))
+    def _rmse(self, mesh: Mesh) -> float:
+        """Root mean square error per channel, as it is measured [code values of the space]."""
+        samples = CHANNELS * mesh.width * mesh.height
+        return float(np.sqrt(2.0 * self._appraiser.energies(mesh).sum() / samples))
 
     def _goal(self, count: int, *, calm: bool = False) -> Goal:
         """What the mesh must be like, with a number of triangles."""
@@ -241,7 +245,6 @@ class Triangulator:
             fitting.load_image(frame.pixels, frame.weights)
             load_mesh(fitting, mesh)
         coefficients, energies, counts = fitting.fit()
-        weights = frame.weights
         return Snapshot(
             frame_index=frame.index,
             pts=frame.pts,
@@ -249,22 +252,17 @@ class Triangulator:
             mesh=mesh,
             model=fitting.model,
             coefficients=coefficients,
-            energies=energies / self._white,
+            energies=energies,
             counts=counts,
-            weight=None if weights is None else float(weights.sum(dtype=np.int64)) / WHITE,
         )
 
 
-def _against(options: TriangulateOptions, scale: float, white: int) -> TriangulateOptions:
+def _against(options: TriangulateOptions, scale: float) -> TriangulateOptions:
     """Options that weigh against energies of another scale what they say for those of RGB.
 
     Args:
         options: As the user gave them; `error` is in code values of the space already.
         scale: Energy of an error over its energy in RGB, typically [1].
-        white: Weight of a pixel that counts fully.
     """
-    pull, refine = options.optimize, options.refine
-    if refine.error is not None:
-        refine = replace(refine, error=refine.error * white**0.5)
-    pull = replace(pull, regularity=pull.regularity * scale)
-    return replace(options, optimize=pull, refine=refine)
+    pull = options.optimize
+    return replace(options, optimize=replace(pull, regularity=pull.regularity * scale))

@@ -34,6 +34,13 @@ def noise(width: int, height: int, seed: int = 0) -> np.ndarray:
     return np.random.default_rng(seed).integers(0, 256, (height, width, 3), dtype=np.uint8)
 
 
+def random_weights(width: int, height: int, seed: int = 0) -> np.ndarray:
+    """Independent weights from 1 to 255 without a common divisor, [H, W] uint8."""
+    weights = np.random.default_rng(seed).integers(1, 256, (height, width), dtype=np.uint8)
+    weights[0, 0] = 1
+    return weights
+
+
 def waves(width: int, height: int) -> np.ndarray:
     """A picture of soft waves and one bright disc with a sharp outline, [H, W, 3] uint8."""
     y, x = np.mgrid[:height, :width] + 0.5
@@ -83,11 +90,17 @@ def frame_of(picture: np.ndarray, index: int = 0) -> Frame:
 
 
 def poisoned_workspace(
-    device: Device, picture: np.ndarray, mesh: Mesh, model: ColorModel, sums: str = "edges"
+    device: Device,
+    picture: np.ndarray,
+    mesh: Mesh,
+    model: ColorModel,
+    sums: str = "edges",
+    weights: np.ndarray | None = None,
 ) -> Workspace:
     """A workspace with a picture and a mesh in it; its memory held nonsense before."""
-    workspace = PoisonedWorkspace(device, (picture.shape[1], picture.shape[0]), model, sums)
-    workspace.load_image(picture)
+    size = (picture.shape[1], picture.shape[0])
+    workspace = PoisonedWorkspace(device, size, model, sums, weighted=weights is not None)
+    workspace.load_image(picture, weights)
     load_mesh(workspace, mesh)
     return workspace
 

@@ -18,7 +18,7 @@ from stages.snapshot import Snapshot
 from tests.meshes import HEIGHT, WIDTH, random_mesh, two_triangles
 from tests.snapshots import edited, restless_shot, snapshot_with
 from tests.tracks import write_clip
-from warp_kernels.color_model import LINEAR
+from warp_kernels.color_model import LINEAR, QUADRATIC, ColorModel
 from warp_kernels.device import Device
 from warp_kernels.styles import Flat, Gradient, Style
 
@@ -160,18 +160,40 @@ def test_as_many_frames_as_fade_are_remembered(device: str) -> None:
             np.testing.assert_array_equal(part[-1], whole[number])
 
 
-def test_gradients_show_through_where_they_were(device: str) -> None:
-    """A linear picture that moves with the mesh stays that picture under every flip."""
-    mesh = random_mesh(4)
-    other = flipped(mesh)
-    slopes = np.array([[20, 1, 0.5], [230, -1, 0.5], [60, 0.5, 1]])
+@pytest.mark.parametrize("model", [LINEAR, QUADRATIC], ids=lambda model: model.name)
+def test_gradients_show_through_where_they_were(model: ColorModel, device: str) -> None:
+    """A picture that the model can hold stays that picture under every change of triangles."""
+    mesh = random_mesh(4, inner=6)
+    terms = {(0, 0): (20, 220, 60), (1, 0): (1, -1, 0.5), (0, 1): (0.5, 0.5, 0.5)}
+    terms |= {(2, 0): (0.01, -0.01, 0), (1, 1): (0, 0, 0.015), (0, 2): (0, 0, -0.01)}
+    one = np.array([terms[exponent] for exponent in model.exponents]).T
+    split = split_triangles(flipped(mesh), np.arange(0, mesh.triangle_count, 2))
     shot = [
-        snapshot_with(each, np.tile(slopes, (each.triangle_count, 1, 1)), model=LINEAR)
-        for each in (mesh, other, other)
+        snapshot_with(each, np.tile(one, (each.triangle_count, 1, 1)), model=model)
+        for each in (mesh, flipped(mesh), split, split)
     ]
     first, *later = play(shot, 4, device, Gradient())
+    assert 0 < first.min() < first.max() < 255
     for picture in later:
         assert np.abs(picture.astype(int) - first).max() <= 1
+
+
+def test_curved_colours_fade_from_old_to_new(device: str) -> None:
+    """What vanished keeps its own curvature under what came, whose curvature is another."""
+    mesh = two_triangles()
+    grey = np.zeros((2, 3, QUADRATIC.term_count))
+    grey[:, :, QUADRATIC.term(0, 0)] = 128.0
+    old, new = grey.copy(), grey.copy()
+    old[:, :, QUADRATIC.term(2, 0)] = 90 / mesh.width**2
+    new[:, :, QUADRATIC.term(0, 2)] = -90 / mesh.height**2
+    shot = [snapshot_with(mesh, old, model=QUADRATIC)]
+    shot += [snapshot_with(flipped(mesh), new, model=QUADRATIC)] * 6
+    pictures = [picture.astype(int) for picture in play(shot, 4, device, Gradient())]
+    assert np.ptp(pictures[0]) > 9
+    assert np.ptp(pictures[5]) > 9
+    for number, share in enumerate((0.104, 0.352, 0.648, 0.896), start=1):  # 3 s^2 - 2 s^3
+        wanted = pictures[0] + share * (pictures[5] - pictures[0])
+        assert np.abs(pictures[number] - wanted).max() <= 1.5
 
 
 def test_part_of_a_track_is_that_of_the_whole(tmp_path: Path) -> None:

@@ -93,3 +93,17 @@ def test_a_row_of_slivers_along_an_edge_goes() -> None:
     collapsed = collapse_slivers(mesh, 0.2)
     assert_valid(collapsed)
     assert collapsed.heights.min() >= 0.2
+
+
+def test_flat_triangle_on_the_border_is_pressed_onto_it() -> None:
+    """The bug that left wedges at the picture's rim: an inner vertex could not join the border."""
+    points = np.array([[0, 0], [20, 0], [20, 20], [0, 20], [9, 0.3]])
+    rows = [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]]
+    mesh = mesh_of(points, rows, 20, 20)
+    mended = collapse_slivers(mesh, 0.5)
+    assert_valid(mended)
+    assert mended.triangle_count == 3
+    np.testing.assert_array_equal(mended.vertices[4], (9, 0))
+    np.testing.assert_array_equal(mended.vertex_ids, mesh.vertex_ids)
+    np.testing.assert_array_equal(mended.triangle_ids, mesh.triangle_ids[1:])
+    assert mended.on_top_bottom[4]

@@ -7,9 +7,9 @@ import pytest
 
 from stages.mesh import Mesh, mesh_of
 from stages.validate import assert_valid
-from tests.kernel_samples import noise, poisoned_workspace, random_mesh, waves
+from tests.kernel_samples import noise, poisoned_workspace, random_mesh, random_weights, waves
 from tests.oracles.gradient import umbrella_gradient, vertex_gradient
-from warp_kernels.color_model import COLOR_MODELS, CONSTANT, LINEAR, ColorModel
+from warp_kernels.color_model import COLOR_MODELS, CONSTANT, LINEAR, QUADRATIC, ColorModel
 from warp_kernels.device import Device
 
 DIRECTION_TOLERANCE = 1e-9
@@ -116,14 +116,18 @@ def test_no_triangle_turns_over_on_noise(trust: float, model: ColorModel, device
 
 @MODELS
 def test_energy_falls(model: ColorModel, device: str) -> None:
-    """Eighty iterations take away a fifth of the error or more, and every ten of them some."""
+    """Eighty iterations take away a fifth of the error or more, and every ten of them some.
+
+    Where next to nothing is left steps of a pixel's difference may turn round.
+    """
     mesh = random_mesh(WIDTH, HEIGHT, 60, seed=3)
     workspace = poisoned_workspace(Device(device), waves(WIDTH, HEIGHT), mesh, model)
     totals = [workspace.energies()[:, 0].sum()]
     for _ in range(8):
         workspace.iterate(10, trust=0.3, regularity=1e-3)
         totals.append(workspace.energies()[:, 0].sum())
-    assert (np.diff(totals[:5]) < 0).all()
+    falling = np.diff(totals[:5]) < 0
+    assert (falling | (np.array(totals[:4]) < 0.1 * totals[0])).all()
     assert totals[-1] < 0.8 * totals[0]
 
 
@@ -142,12 +146,14 @@ def test_same_bits_on_any_number_of_threads(model: ColorModel, sums: str, device
         np.testing.assert_array_equal(other, results[0])
 
 
-def test_both_sums_move_vertices_alike(device: str) -> None:
+@pytest.mark.parametrize(("model", "weighted"), [(LINEAR, False), (QUADRATIC, True)])
+def test_both_sums_move_vertices_alike(model: ColorModel, weighted: bool, device: str) -> None:
     """Equal integers give equal steps: `edges` and `fragments` end at the same bits."""
     picture, mesh = noise(WIDTH, HEIGHT), random_mesh(WIDTH, HEIGHT, 50)
+    weights = random_weights(WIDTH, HEIGHT) if weighted else None
     ends = []
     for sums in ("edges", "fragments"):
-        workspace = poisoned_workspace(Device(device), picture, mesh, LINEAR, sums)
+        workspace = poisoned_workspace(Device(device), picture, mesh, model, sums, weights)
         workspace.iterate(25, trust=0.5, regularity=1e-3)
         ends.append(workspace.vertices())
     np.testing.assert_array_equal(*ends)

@@ -13,12 +13,14 @@ from stages.edits import (
     flippable,
     independent_collapses,
     independent_flips,
+    press_onto_border,
+    pressable,
     split_edges,
     split_triangles,
     turn_base_edge,
 )
 from stages.edits.neighbourhood import edge_ends, edge_triangles, stars
-from stages.mesh import Mesh, twins_of
+from stages.mesh import Mesh, mesh_of, twins_of
 from stages.validate import assert_valid
 
 
@@ -298,3 +300,34 @@ def test_turning_the_base_edge_three_times_gives_the_row_back() -> None:
     assert np.array_equal(turned.triangles[others], mesh.triangles[others])
     again = turn_base_edge(turn_base_edge(turned, [4, 9]), [4, 9])
     assert np.array_equal(again.triangles, mesh.triangles)
+
+
+def test_press_refuses_what_would_fold_or_is_not_on_the_border() -> None:
+    """Inner edges, apexes on the border, apexes beyond the edge's ends, and neighbours."""
+    points = np.array([[0, 0], [20, 0], [20, 20], [0, 20], [6, 4], [14, 4]])
+    rows = [[0, 1, 4], [1, 5, 4], [1, 2, 5], [2, 3, 5], [3, 4, 5], [3, 0, 4]]
+    mesh = mesh_of(points, rows, 20, 20)
+    border = np.flatnonzero(mesh.twins < 0)
+    inner = np.flatnonzero(mesh.twins >= 0)
+    assert not pressable(mesh, inner).any()
+    possible = border[pressable(mesh, border)]
+    assert len(possible)
+    for edge in possible:
+        assert_valid(press_onto_border(mesh, [edge]))
+    for edge in np.setdiff1d(np.arange(3 * mesh.triangle_count), possible):
+        with pytest.raises(ValueError, match="pressed"):
+            press_onto_border(mesh, [edge])
+    with pytest.raises(ValueError, match="share"):
+        press_onto_border(mesh, possible[[0, 0]])
+
+
+@settings(max_examples=20, deadline=None)
+@given(seed=st.integers(0, 10_000))
+def test_pressing_keeps_meshes_valid(seed: int) -> None:
+    """Any one that is allowed, on random meshes with many vertices near the border."""
+    mesh = random_mesh(seed, inner=60)
+    edges = np.arange(3 * mesh.triangle_count)
+    for edge in edges[pressable(mesh, edges)]:
+        pressed = press_onto_border(mesh, [edge])
+        assert_valid(pressed)
+        assert pressed.triangle_count == mesh.triangle_count - 1

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from pipeline.cli import main
-from pipeline.report import measure
+from pipeline.measure import measure
 from pipeline.resample import resample
 from stages.media import FrameRange
 from warp_kernels.errors import MediaError, TrimotionError

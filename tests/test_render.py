@@ -12,7 +12,7 @@ from stages.render import Renderer
 from stages.snapshot import Snapshot
 from stages.validate import assert_valid
 from tests.kernel_samples import noise, random_mesh, snapshot_of, waves
-from warp_kernels.color_model import CONSTANT, LINEAR
+from warp_kernels.color_model import CONSTANT, LINEAR, QUADRATIC
 from warp_kernels.device import Device
 from warp_kernels.errors import OptionError
 from warp_kernels.raster import MAX_SIDE
@@ -117,6 +117,39 @@ def test_gradient_reproduces_a_linear_picture(size: tuple[int, int], device: str
     v = ((np.arange(size[1]) + 0.5) * 47 / size[1] - 0.5)[:, None]
     expected = np.stack(np.broadcast_arrays(20 + 2 * u + v, 240 - 3 * u, 15 + u + 3 * v), axis=2)
     assert np.abs(pixels - expected).max() <= 1.0
+
+
+@pytest.mark.parametrize("size", [(16, 16), (48, 48), (40, 24)])
+def test_gradient_reproduces_a_quadratic_picture(size: tuple[int, int], device: str) -> None:
+    """A picture that is quadratic in x and y comes back within one code value, at any size."""
+
+    def paint(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        """The same function of positions, of pixels and of the output."""
+        channels = (x**2 + y, 248 - x * y - y, y**2 + x)
+        return np.stack(np.broadcast_arrays(*channels), axis=2)
+
+    source = paint(np.arange(16), np.arange(16)[:, None]).astype(np.uint8)
+    snapshot = snapshot_of(Device(device), source, square(16), QUADRATIC)
+    pixels = draw(snapshot, device, Gradient(), size=size).astype(float)
+    u = (np.arange(size[0]) + 0.5) * 16 / size[0] - 0.5
+    v = ((np.arange(size[1]) + 0.5) * 16 / size[1] - 0.5)[:, None]
+    assert np.abs(pixels - np.clip(paint(u, v), 0, 255)).max() <= 1.0
+
+
+def test_flat_shows_the_mean_of_a_quadratic_colour(device: str) -> None:
+    """Not its value at the centre, which a bulge raises."""
+    y, x = np.mgrid[:40, :40]
+    bulge = (250 - ((x - 20) ** 2 + (y - 20) ** 2) / 4).astype(np.uint8)
+    picture = np.repeat(bulge[:, :, None], 3, axis=2)
+    flat, mean = (
+        draw(snapshot_of(Device(device), picture, square(40), model), device, Flat())
+        for model in (QUADRATIC, CONSTANT)
+    )
+    assert np.abs(flat.astype(int) - mean).max() <= 3
+    at_centre = draw(
+        snapshot_of(Device(device), picture, square(40), QUADRATIC), device, Gradient()
+    )
+    assert at_centre[13, 13, 0] > flat[13, 13, 0] + 10
 
 
 def test_colors_beyond_the_range_are_clipped(device: str) -> None:

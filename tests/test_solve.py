@@ -1,16 +1,27 @@
 """Best colours and their errors against least squares in float64."""
 
+from functools import lru_cache
+
 import numpy as np
 import pytest
 
 from stages.mesh import mesh_of
 from stages.validate import assert_valid
-from tests.kernel_samples import delaunay_mesh, noise, poisoned_workspace, random_mesh, snapshot_of
-from tests.oracles.coverage import covered_pixels, rounded
-from tests.oracles.fit import best_fit, is_singular
+from tests.kernel_samples import (
+    delaunay_mesh,
+    noise,
+    poisoned_workspace,
+    random_mesh,
+    random_weights,
+    snapshot_of,
+)
+from tests.oracles.coverage import Pixel, covered_pixels, rounded
+from tests.oracles.fit import best_fit, exact_energy, is_singular
 from tests.oracles.variants import variants
-from warp_kernels.color_model import COLOR_MODELS, CONSTANT, LINEAR, ColorModel
+from warp_kernels.color_model import COLOR_MODELS, CONSTANT, LINEAR, QUADRATIC, ColorModel
 from warp_kernels.device import Device
+from warp_kernels.fit import READABLE
+from warp_kernels.raster import MAX_SIDE
 
 ENERGY_TOLERANCE = 1e-5
 """Error allowed in an energy [code value^2 px]: rounding of the difference of two sums of about
@@ -19,38 +30,96 @@ COLOR_TOLERANCE = 1e-6
 """Error allowed in a colour [code values]."""
 MODELS = pytest.mark.parametrize("model", COLOR_MODELS.values(), ids=COLOR_MODELS)
 SUMS = pytest.mark.parametrize("sums", ["edges", "fragments"])
+WEIGHTED = pytest.mark.parametrize("weighted", [False, True], ids=["plain", "weighted"])
+
+
+@lru_cache
+def variants_by_oracle() -> list[list[list[Pixel]]]:
+    """What all variants of the triangles of a mesh over 41 x 33 px cover."""
+    mesh = random_mesh(41, 33, 50)
+    return [
+        [covered_pixels(moved, 41, 33)[1] for moved in variants(corners)]
+        for corners in mesh.vertices[mesh.triangles]
+    ]
+
+
+@lru_cache
+def energies_by_oracle(model: ColorModel, weighted: bool) -> np.ndarray:
+    """Energies of those variants over noise, [T, 13]."""
+    weights = random_weights(41, 33) if weighted else None
+    energies = [
+        [best_fit(noise(41, 33), pixels, model, weights)[1] for pixels in row]
+        for row in variants_by_oracle()
+    ]
+    return np.array(energies) / (weights.mean() if weighted else 1.0)
 
 
 @MODELS
 @SUMS
+@WEIGHTED
 def test_energies_of_all_variants_equal_the_oracle(
-    sums: str, model: ColorModel, device: str
+    weighted: bool, sums: str, model: ColorModel, device: str
 ) -> None:
     """The error of every displaced triangle, also where it leaves the picture or turns over."""
     picture, mesh = noise(41, 33), random_mesh(41, 33, 50)
-    actual = poisoned_workspace(Device(device), picture, mesh, model, sums).energies()
-    for triangle, corners in enumerate(mesh.vertices[mesh.triangles]):
-        for variant, moved in enumerate(variants(corners)):
-            _, pixels = covered_pixels(moved, 41, 33)
-            _, expected = best_fit(picture, pixels, model)
-            assert actual[triangle, variant] == pytest.approx(expected, abs=ENERGY_TOLERANCE)
+    weights = random_weights(41, 33) if weighted else None
+    actual = poisoned_workspace(Device(device), picture, mesh, model, sums, weights).energies()
+    expected = energies_by_oracle(model, weighted)
+    np.testing.assert_allclose(actual, expected, rtol=0, atol=ENERGY_TOLERANCE)
 
 
 @MODELS
+@WEIGHTED
 @pytest.mark.parametrize("inner", [6, 60, 600])
-def test_colors_equal_the_oracle(inner: int, model: ColorModel, device: str) -> None:
+def test_colors_equal_the_oracle(
+    inner: int, weighted: bool, model: ColorModel, device: str
+) -> None:
     """The polynomials give the fitted colour at every pixel, as do energies and counts."""
     picture, mesh = noise(45, 31, seed=inner), random_mesh(45, 31, inner, seed=inner)
-    snapshot = snapshot_of(Device(device), picture, mesh, model)
+    weights = random_weights(45, 31) if weighted else None
+    factors = np.ones((31, 45), dtype=int) if weights is None else weights.astype(int)
+    workspace = poisoned_workspace(Device(device), picture, mesh, model, weights=weights)
+    coefficients, energies, counts = workspace.fit()
     powers = np.array(model.exponents)
     for triangle, corners in enumerate(mesh.vertices[mesh.triangles].tolist()):
         _, pixels = covered_pixels([rounded(x, y) for x, y in corners], 45, 31)
-        fitted, energy = best_fit(picture, pixels, model)
-        assert snapshot.counts[triangle] == len(pixels)
-        assert snapshot.energies[triangle] == pytest.approx(energy, abs=ENERGY_TOLERANCE)
+        fitted, energy = best_fit(picture, pixels, model, weights)
+        assert counts[triangle] == sum(factors[y, x] for x, y in pixels)
+        expected = energy / factors.mean()
+        assert energies[triangle] == pytest.approx(expected, abs=ENERGY_TOLERANCE)
         terms = ((np.array(pixels).reshape(-1, 1, 2) + 0.5) ** powers).prod(axis=2)
-        colors = terms @ snapshot.coefficients[triangle].T
+        colors = terms @ coefficients[triangle].T
         np.testing.assert_allclose(colors, fitted, atol=COLOR_TOLERANCE)
+
+
+@WEIGHTED
+def test_more_terms_leave_no_more_energy(weighted: bool, device: str) -> None:
+    """Per triangle and variant the quadratic colour is at least as good as the linear one."""
+    picture, mesh = noise(61, 47), random_mesh(61, 47, 90, seed=2)
+    weights = random_weights(61, 47) if weighted else None
+    constant, linear, quadratic = (
+        poisoned_workspace(Device(device), picture, mesh, model, weights=weights).energies()
+        for model in (CONSTANT, LINEAR, QUADRATIC)
+    )
+    assert (quadratic <= linear).all()
+    assert (linear <= constant).all()
+    assert quadratic.sum() < linear.sum() < constant.sum()
+
+
+def test_weights_draw_the_colour_to_what_counts(device: str) -> None:
+    """Where one half of a triangle counts for next to nothing the other half has its colour."""
+    picture = np.zeros((20, 20, 3), dtype=np.uint8)
+    picture[:, 10:] = 200
+    weights = np.where(picture[..., 0] > 0, 255, 1).astype(np.uint8)
+    points = np.array([[0, 0], [20, 0], [20, 20], [0, 20]])
+    mesh = mesh_of(points, [[0, 1, 3], [1, 2, 3]], 20, 20)
+    workspace = poisoned_workspace(Device(device), picture, mesh, CONSTANT, weights=weights)
+    coefficients, energies, _ = workspace.fit()
+    assert (coefficients[:, :, 0] > 195).all()
+    errors = (picture[None] - coefficients[:, None, None, :, 0]) ** 2
+    _, pixels = covered_pixels([rounded(x, y) for x, y in points[[0, 1, 3]].tolist()], 20, 20)
+    expected = 0.5 * sum(weights[y, x] * errors[0, y, x].sum() for x, y in pixels) / weights.mean()
+    assert energies[0] == pytest.approx(expected)
 
 
 def linear_picture(width: int, height: int) -> np.ndarray:
@@ -59,31 +128,61 @@ def linear_picture(width: int, height: int) -> np.ndarray:
     return np.stack([20 + 2 * x + y, 250 - 3 * x, 10 + x + 3 * y], axis=2).astype(np.uint8)
 
 
+def quadratic_picture(width: int, height: int) -> np.ndarray:
+    """Colours that are exact quadratic functions of the pixel, for sides up to 16, [H, W, 3]."""
+    y, x = np.mgrid[:height, :width]
+    return np.stack([x**2 + y, 255 - x * y - 2 * y, y**2 + x], axis=2).astype(np.uint8)
+
+
 def plain_picture(width: int, height: int) -> np.ndarray:
     """One colour, [H, W, 3] uint8."""
     return np.broadcast_to(np.array([12, 200, 255], np.uint8), (height, width, 3)).copy()
 
 
-@pytest.mark.parametrize(
-    ("model", "paint"),
-    [(CONSTANT, plain_picture), (LINEAR, plain_picture), (LINEAR, linear_picture)],
-)
-def test_polynomial_of_the_degree_has_no_energy(model: ColorModel, paint, device: str) -> None:
+@pytest.mark.parametrize("model", [LINEAR, QUADRATIC], ids=lambda model: model.name)
+@WEIGHTED
+def test_polynomial_of_the_degree_has_no_energy(
+    weighted: bool, model: ColorModel, device: str
+) -> None:
     """A picture that the model can draw leaves no error in any triangle or variant."""
+    paint, side = (linear_picture, 47) if model is LINEAR else (quadratic_picture, 16)
+    mesh = random_mesh(side, side, 25 if model is LINEAR else 9, seed=3)
+    weights = random_weights(side, side) if weighted else None
+    workspace = poisoned_workspace(Device(device), paint(side, side), mesh, model, weights=weights)
+    # a displaced triangle whose pixels lie on one line or conic has less to offer
+    regular = [_is_regular(c, side, model.degree) for c in mesh.vertices[mesh.triangles]]
+    assert sum(regular) > (25 if model is LINEAR else 8)
+    assert np.abs(workspace.energies()[regular]).max() < ENERGY_TOLERANCE
+
+
+@MODELS
+def test_plain_picture_has_no_energy(model: ColorModel, device: str) -> None:
+    """One colour leaves no error in any triangle or variant, whatever its pixels."""
     mesh = random_mesh(53, 47, 60, seed=3)
-    workspace = poisoned_workspace(Device(device), paint(53, 47), mesh, model)
-    energies = workspace.energies()
-    if paint is linear_picture:
-        # a displaced triangle whose pixels lie on one line has the constant to offer
-        energies = energies[[_is_regular(corners) for corners in mesh.vertices[mesh.triangles]]]
-        assert len(energies) > 60
-    assert np.abs(energies).max() < ENERGY_TOLERANCE
+    workspace = poisoned_workspace(Device(device), plain_picture(53, 47), mesh, model)
+    assert np.abs(workspace.energies()).max() < ENERGY_TOLERANCE
 
 
-def _is_regular(corners: np.ndarray) -> bool:
-    """Whether every variant has a linear fit, or no pixel at all."""
-    covered = (covered_pixels(moved, 53, 47)[1] for moved in variants(corners))
-    return all(not pixels or not is_singular(pixels) for pixels in covered)
+def _is_regular(corners: np.ndarray, side: int, degree: int) -> bool:
+    """Whether every variant has a fit of the degree, or no pixel at all."""
+    covered = (covered_pixels(moved, side, side)[1] for moved in variants(corners))
+    return all(not pixels or not is_singular(pixels, degree) for pixels in covered)
+
+
+def test_quadratic_colors_are_found_exactly(device: str) -> None:
+    """The coefficients are those of the picture, in positions from the upper left corner."""
+    mesh = random_mesh(16, 16, 3, seed=4)
+    snapshot = snapshot_of(Device(device), quadratic_picture(16, 16), mesh, QUADRATIC)
+    large = snapshot.counts > 20
+    assert large.sum() > 3
+    # with u = x - 1/2, v = y - 1/2: u^2 + v, 255 - u v - 2 v, v^2 + u
+    expected = [
+        [0.25 - 0.5, -1, 1, 1, 0, 0],
+        [255 - 0.25 + 1, 0.5, 0.5 - 2, 0, -1, 0],
+        [0.25 - 0.5, 1, -1, 0, 0, 1],
+    ]
+    for coefficients in snapshot.coefficients[large]:
+        np.testing.assert_allclose(coefficients, expected, atol=COLOR_TOLERANCE)
 
 
 def test_linear_colors_are_found_exactly(device: str) -> None:
@@ -117,18 +216,96 @@ def test_triangle_without_pixels(sums: str, model: ColorModel, device: str) -> N
     assert np.isfinite(energies).all()
 
 
+@pytest.mark.parametrize("model", [LINEAR, QUADRATIC], ids=lambda model: model.name)
 @pytest.mark.parametrize("size", [(31, 1), (1, 31)])
-def test_pixels_on_a_line_take_the_constant(size: tuple[int, int], device: str) -> None:
+def test_pixels_on_a_line_take_the_constant(
+    size: tuple[int, int], model: ColorModel, device: str
+) -> None:
     """In a picture of one row or column the linear system is singular: the mean colour stays."""
     width, height = size
     points = np.array([[0, 0], [width, 0], [width, height], [0, height]])
     mesh = mesh_of(points, [[0, 1, 3], [1, 2, 3]], width, height)
     picture = noise(width, height)
-    linear = snapshot_of(Device(device), picture, mesh, LINEAR)
+    sloping = snapshot_of(Device(device), picture, mesh, model)
     constant = snapshot_of(Device(device), picture, mesh, CONSTANT)
-    np.testing.assert_array_equal(linear.coefficients[:, :, 1:], 0.0)
-    np.testing.assert_allclose(linear.coefficients[:, :, 0], constant.coefficients[:, :, 0])
-    np.testing.assert_allclose(linear.energies, constant.energies, rtol=1e-12)
+    np.testing.assert_array_equal(sloping.coefficients[:, :, 1:], 0.0)
+    np.testing.assert_allclose(sloping.coefficients[:, :, 0], constant.coefficients[:, :, 0])
+    np.testing.assert_allclose(sloping.energies, constant.energies, rtol=1e-12)
+
+
+@pytest.mark.parametrize("size", [(31, 2), (2, 31)])
+def test_pixels_on_two_lines_take_the_linear_colour(size: tuple[int, int], device: str) -> None:
+    """Two rows or columns are a conic: the quadratic system is singular, the linear one is not."""
+    width, height = size
+    points = np.array([[0, 0], [width, 0], [width, height], [0, height]])
+    mesh = mesh_of(points, [[0, 1, 3], [1, 2, 3]], width, height)
+    quadratic, linear = (
+        snapshot_of(Device(device), noise(width, height), mesh, model)
+        for model in (QUADRATIC, LINEAR)
+    )
+    np.testing.assert_array_equal(quadratic.coefficients[:, :, 3:], 0.0)
+    np.testing.assert_array_equal(quadratic.coefficients[:, :, :3], linear.coefficients)
+    np.testing.assert_array_equal(quadratic.energies, linear.energies)
+
+
+def wide_strip(width: int, height: int) -> np.ndarray:
+    """Noise on a parabola along a wide picture, [H, W, 3] uint8."""
+    x = np.linspace(-1, 1, width)[None, :, None]
+    curve = 20 + 180 * x**2 + noise(width, height, seed=3) / 8
+    return curve.astype(np.uint8)
+
+
+@WEIGHTED
+def test_far_from_the_middle_sums_wrap_and_fits_do_not(weighted: bool, device: str) -> None:
+    """At the ends of the widest picture x^4 leaves 64 bits; the energies are exact all the same."""
+    width, height = MAX_SIDE, 80
+    points = [[x, y] for x in (0, 600, width // 2, width - 600, width) for y in (0, height)]
+    mesh = delaunay_mesh(np.array(points), width, height)
+    picture = wide_strip(width, height)
+    weights = random_weights(width, height) if weighted else None
+    workspace = poisoned_workspace(Device(device), picture, mesh, QUADRATIC, weights=weights)
+    # the edge x = 600 has all of x^4 to its left
+    column = np.arange(600, dtype=object) - width // 2
+    assert height * (column**4).sum() > 2**63
+    coefficients, energies, _ = workspace.fit()
+    mean = weights.mean() if weighted else 1.0
+    for triangle in np.flatnonzero(mesh.areas < 30_000)[1:3]:
+        corners = mesh.vertices[mesh.triangles[triangle]].tolist()
+        _, pixels = covered_pixels([rounded(x, y) for x, y in corners], width, height)
+        expected = exact_energy(picture, pixels, QUADRATIC, weights) / mean
+        assert energies[triangle] == pytest.approx(expected, rel=1e-9)
+        terms = (np.array(pixels)[:, None, :] + 0.5) ** np.array(QUADRATIC.exponents)
+        drawn = terms.prod(axis=2) @ coefficients[triangle].T
+        fitted, _ = best_fit(picture, pixels, QUADRATIC, weights)
+        np.testing.assert_allclose(drawn, fitted, atol=COLOR_TOLERANCE)
+
+
+def test_triangle_too_large_for_fourth_powers_takes_the_linear_colour(device: str) -> None:
+    """Across the whole of the widest picture x^4 cannot be read; the picture is not refused."""
+    width, height = MAX_SIDE, 80
+    points = np.array([[0, 0], [width, 0], [width, height], [0, height]])
+    mesh = mesh_of(points, [[0, 1, 3], [1, 2, 3]], width, height)
+    quadratic, linear = (
+        snapshot_of(Device(device), wide_strip(width, height), mesh, model)
+        for model in (QUADRATIC, LINEAR)
+    )
+    np.testing.assert_array_equal(quadratic.coefficients[:, :, 3:], 0.0)
+    np.testing.assert_array_equal(quadratic.energies, linear.energies)
+
+
+@pytest.mark.parametrize("size", [(3840, 2160), (2160, 3840)])
+def test_bound_on_fourth_powers_is_true(size: tuple[int, int]) -> None:
+    """Right triangles of all widths in a large picture: below the bound the sum is readable."""
+    width, height = size
+    for side in range(100, width, 200):
+        rows = np.linspace(height, 0, side, dtype=np.int64)
+        x = np.arange(side, dtype=object) - side // 3
+        second, fourth = (int((rows * x**power).sum()) for power in (2, 4))
+        for reach in (width // 2, width):
+            if second * reach**2 < READABLE and side <= 2 * reach:
+                assert fourth < 2**63
+        if width == 3840 and side <= 1100:
+            assert second * width**2 < READABLE
 
 
 def test_pixels_on_a_slanted_line_take_the_constant(device: str) -> None:

@@ -207,18 +207,7 @@ def test_impossible_options_are_refused(wrong: dict) -> None:
         options(**wrong)
 
 
-@pytest.mark.parametrize(
-    "topology",
-    [
-        "energy",
-        pytest.param(
-            "delaunay",
-            marks=pytest.mark.xfail(
-                strict=True, reason="collapses and splits go on although nothing changes"
-            ),
-        ),
-    ],
-)
+@pytest.mark.parametrize("topology", TOPOLOGIES)
 def test_still_clip_comes_to_rest(topology: str, device: str) -> None:
     """The same picture again and again: vertices stay where they are, and hardly any changes."""
     wanted = options(iterations=300, topology=topology)

@@ -13,26 +13,18 @@ from pipeline.cli import main
 from pipeline.job import Job
 from pipeline.progress import Progress
 from stages.frame import Frame
-from stages.layouts import LAYOUTS
 from stages.media import FrameRange, open_decoder
 from stages.refine import RefineOptions
-from stages.triangulate import TriangulateOptions, Triangulator
+from stages.triangulate import TriangulateOptions
 from stages.weights import open_weights
 from tests import media_samples as samples
-from tests.kernel_samples import frame_of, waves
-from warp_kernels.color_model import LINEAR
-from warp_kernels.device import Device
+from tests.kernel_samples import frame_of
 from warp_kernels.errors import MediaError
 from warp_kernels.styles import STYLES
 from warp_kernels.workspace import Workspace
 
 SIZE = (48, 32)
 QUICK = TriangulateOptions(iterations=16, frame_iterations=2, refine=RefineOptions(triangles=40))
-UNWEIGHTED_KERNELS = pytest.mark.xfail(
-    raises=NotImplementedError,
-    strict=True,
-    reason="remove this mark where Workspace sums weights, and its placeholder",
-)
 
 
 class RecordingWorkspace(Workspace):
@@ -292,22 +284,6 @@ def test_no_map_asks_for_no_weights(workspaces, tmp_path: Path) -> None:
     assert workspace.loaded == [None]
 
 
-def test_what_is_weighed_against_energies_grows_with_them(workspaces) -> None:
-    """Where the map is white, lambda, --error and the rmse mean what they mean without it."""
-    refine = RefineOptions(triangles=30, error=0.5)
-    options = TriangulateOptions(iterations=8, refine=refine)
-    weights = np.full((SIZE[1], SIZE[0]), 51, dtype=np.uint8)
-    frame = Frame(0, 0, Fraction(1), waves(*SIZE), weights)
-    triangulator = Triangulator(Device("cpu", 1), SIZE, options, LINEAR, weighted=True)
-    against = triangulator.options
-    assert against.optimize.regularity == 255 * options.optimize.regularity
-    assert against.refine.error == pytest.approx(np.sqrt(255) * 0.5)
-    snapshot = triangulator.first(frame, LAYOUTS["grid"](), np.random.default_rng(0))
-    assert snapshot.weight == pytest.approx(0.2 * SIZE[0] * SIZE[1])
-    expected = np.sqrt(2 * snapshot.energies.sum() / (3 * snapshot.weight))
-    assert snapshot.rmse == pytest.approx(expected)
-
-
 @pytest.mark.parametrize("wrong", [np.ones((3, 3), np.uint8), np.ones((32, 48), np.float32)])
 def test_frame_refuses_other_weights(wrong: np.ndarray) -> None:
     """Another shape or type is a mistake of the caller."""
@@ -329,7 +305,6 @@ def halves_rmse(picture: np.ndarray, path: Path) -> np.ndarray:
     return np.sqrt([squares[:, :80].mean(), squares[:, 80:].mean()])
 
 
-@UNWEIGHTED_KERNELS
 @pytest.mark.parametrize("style", ["flat", "gradient"])
 def test_white_half_is_approximated_better(style: str, tmp_path: Path) -> None:
     """Alike without a map; with one the white half gains clearly, at the other's expense."""
@@ -355,7 +330,6 @@ def test_white_half_is_approximated_better(style: str, tmp_path: Path) -> None:
     assert errors["left"][1] > errors["even"][1]
 
 
-@UNWEIGHTED_KERNELS
 def test_white_map_changes_nothing_but_rounding(tmp_path: Path) -> None:
     """All white: about the error of a run without a map, also in later frames."""
     pictures = [np.roll(texture(), n, axis=1) for n in range(3)]

@@ -50,6 +50,7 @@ class Canvas:
         self._triangle_of = device.empty(band, int)
         self._pixels = device.empty((height, width), wp.vec3ub)
         self._edge_count = device.empty(1, int)
+        self._curved = device.empty(1, int)
         self._line_width = max((style.line_width for style in styles), default=0.0)
         shape = (height, width) if self._line_width else (1, 1)
         self._coverage = device.empty(shape, float)
@@ -69,6 +70,7 @@ class Canvas:
         edges: np.ndarray,
         colors: np.ndarray,
         gradients: np.ndarray,
+        curvatures: np.ndarray | None,
         centres: np.ndarray,
         layers: Layers | None = None,
     ) -> np.ndarray:
@@ -81,7 +83,8 @@ class Canvas:
             colors: Mean colours of the triangles, then of the vanished ones that show through
                 [code values], [M, 3].
             gradients: Change of colour to the right and down [code values / px], [M, 2, 3].
-            centres: Where a triangle has its mean colour [px of the picture], [M, 2].
+            curvatures: What quadratic colours add, see `Scene`, [M, 4, 3]; None for others.
+            centres: Centroids [px of the picture], [M, 2].
             layers: What fading triangles let through; None where none fades, M is T then.
 
         Returns:
@@ -101,10 +104,13 @@ class Canvas:
             (self._edges, edges),
             (self._colors, colors),
             (self._gradients, gradients),
+            (self._curved, np.array([0 if curvatures is None else 1])),
             (self._centres, centres),
             (self._edge_count, np.array([len(edges)])),
         ):
             self.device.write(array, values)
+        if curvatures is not None:
+            self.device.write(self._curvatures, curvatures)
         phases = []
         if self._line_width:
             self.device.clear(self._coverage)
@@ -143,6 +149,7 @@ class Canvas:
         self._edges = self._empty(vertices + triangles + 1, wp.vec2i)
         self._colors = self._empty(layers, wp.vec3f)
         self._gradients = self._empty((layers, 2), wp.vec3f)
+        self._curvatures = self._empty((layers, 4), wp.vec3f)
         self._centres = self._empty(layers, wp.vec2f)
         tables = LayerTables()
         tables.weights = self._empty(layers, float)
@@ -185,6 +192,8 @@ class Canvas:
         scene = Scene()
         scene.colors = self._colors
         scene.gradients = self._gradients
+        scene.curvatures = self._curvatures
+        scene.curved = self._curved
         scene.centres = self._centres
         scene.edge_coverage = self._coverage
         filling = record_gbuffer(

@@ -8,7 +8,9 @@ the kernels need is derived from its exponents. Moments come in two groups:
   the right-hand sides of Eq. 15. The fourth component of the first term holds the sum of I^2
   over the channels; that of every other term is unused and lets a processor add four at once.
 
-Coordinates in moments count from the middle of the image, which keeps the sums small.
+Where pixels have weights, every sum has the pixel's weight as a factor and the count becomes the
+sum of the weights. Coordinates in moments count from the middle of the image, which keeps the sums
+small. How the sums are kept is told by `moment_layout`.
 """
 
 from dataclasses import dataclass
@@ -20,6 +22,7 @@ class ColorModel:
     """A polynomial colour per triangle.
 
     Source: Lawonn & Guenther (2018), Eqs. 2-3 (models), Eqs. 14-15 (moments).
+    Deviation: the paper has no quadratic colours; its Eq. 15 with three more terms gives them.
     """
 
     name: str
@@ -47,11 +50,6 @@ class ColorModel:
         """Number of moments that depend on the covered area alone; the first is the count."""
         return len(self.area_exponents)
 
-    @property
-    def table_depth(self) -> int:
-        """Entries of the prefix table per pixel: one per power of x from 0 to the degree."""
-        return self.degree + 1
-
     def term(self, a: int, b: int) -> int:
         """Index of the term x^a y^b."""
         return self.exponents.index((a, b))
@@ -72,5 +70,6 @@ SQUARE = 3
 
 CONSTANT = ColorModel("constant", degree=0)
 LINEAR = ColorModel("linear", degree=1)
+QUADRATIC = ColorModel("quadratic", degree=2)
 
-COLOR_MODELS = {model.name: model for model in (CONSTANT, LINEAR)}
+COLOR_MODELS = {model.name: model for model in (CONSTANT, LINEAR, QUADRATIC)}

@@ -11,11 +11,11 @@ from typing import Any
 
 import warp as wp
 
-from warp_kernels.color_model import ColorModel
 from warp_kernels.device import Device, Phase
 from warp_kernels.image_tables import BLOCK_ROWS
-from warp_kernels.moments import area_settler, color_settler, moment_types, row_adders
+from warp_kernels.moment_layout import ENTRY, MomentLayout, moment_types
 from warp_kernels.raster import column_of, to_fixed, walk_edge
+from warp_kernels.running_sums import area_adder, area_settler, color_adder, color_settler
 from warp_kernels.variants import EDGE_VERSIONS, end_displacement
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
@@ -66,19 +66,18 @@ def _walk_starter(lanes: int) -> Any:
 
 
 @cache
-def _edge_kernel(model: ColorModel, versions: int, lanes: int) -> Any:
+def _edge_kernel(layout: MomentLayout, versions: int, lanes: int) -> Any:
     """The kernel of which every thread walks `lanes` of an edge's versions side by side."""
-    types = moment_types(model)
-    color_type, area_type = types.color, types.area
-    add_color, add_area = row_adders(model)
-    settle_color = color_settler(model)
-    settle_area = area_settler(model)
+    types, model = moment_types(layout), layout.model
+    color_type, area_type, integer, word = types.color, types.area, types.integer, types.word
+    add_color, add_area = color_adder(layout), area_adder(layout)
+    settle_color, settle_area = color_settler(layout), area_settler(layout)
     start_walks = _walk_starter(lanes)
     parts = versions // lanes
-    words = 4 * model.table_depth
-    block_words = BLOCK_ROWS * words
-    color_lanes = wp.types.matrix(shape=(lanes, 4 * model.term_count), dtype=wp.int64)
-    area_lanes = wp.types.matrix(shape=(lanes, model.area_count), dtype=wp.int64)
+    words = ENTRY * layout.depth
+    row_bytes = layout.word_bytes * words
+    color_lanes = wp.types.matrix(shape=(lanes, 4 * model.term_count), dtype=integer)
+    area_lanes = wp.types.matrix(shape=(lanes, model.area_count), dtype=integer)
 
     @wp.kernel(module="unique", module_options=EDGE_OPTIONS)
     def sum_along_edges(
@@ -88,7 +87,7 @@ def _edge_kernel(model: ColorModel, versions: int, lanes: int) -> Any:
         edges: wp.array(dtype=wp.vec2i),
         moved: wp.array(dtype=int),
         probe: wp.array(dtype=int),
-        table: wp.array(dtype=wp.vec4i),
+        table: wp.array(dtype=types.entry),
         width: int,
         height: int,
         # Out:
@@ -111,36 +110,37 @@ def _edge_kernel(model: ColorModel, versions: int, lanes: int) -> Any:
         )
         color = color_lanes()
         area = area_lanes()
-        pitch = wp.uint64(width + 1) * wp.uint64(wp.static(4 * block_words))
+        pitch = wp.uint64(width + 1) * wp.uint64(wp.static(BLOCK_ROWS * row_bytes))
         while row < end:
             block = row / wp.static(BLOCK_ROWS)
             inner = wp.uint64(row - block * wp.static(BLOCK_ROWS))
             address = table.ptr + wp.uint64(block) * pitch
-            address += inner * wp.uint64(wp.static(4 * words))
+            address += inner * wp.uint64(wp.static(row_bytes))
             # a plain array from the row on: its index is never negative and its stride is known
-            line = wp.array(ptr=address, shape=(wp.static(block_words) * (width + 1),), dtype=int)
+            length = wp.static(BLOCK_ROWS * words) * (width + 1)
+            line = wp.array(ptr=address, shape=(length,), dtype=word)
             for i in range(wp.static(lanes)):
                 column = wp.max(wp.min(column_of(position[i]), width), 0)
                 # where a version does not cross the row it reads column 0: nothing lies left of it
                 inside = wp.uint32(row - row_begin[i]) < wp.uint32(row_count[i])
                 column = wp.where(inside, column, 0)
                 color[i] = add_color(color[i], line, column)
-                area[i] = add_area(area[i], column)
+                area[i] = add_area(area[i], line, column)
             position += step
             row += 1
-        last = wp.int64(end - height / 2)
-        middle = wp.int64(width / 2)
-        nothing = wp.int64(width >> 31)
+        last = integer(end - height / 2)
+        middle = integer(width / 2)
+        nothing = integer(width >> 31)
         for i in range(wp.static(lanes)):
-            color_out[edge, first + i] = settle_color(color[i], last, wp.int64(sign[i]), nothing)
-            area_out[edge, first + i] = settle_area(area[i], last, middle, wp.int64(sign[i]))
+            color_out[edge, first + i] = settle_color(color[i], last, integer(sign[i]), nothing)
+            area_out[edge, first + i] = settle_area(area[i], last, middle, integer(sign[i]))
 
     return sum_along_edges
 
 
 def record_edge_moments(
     device: Device,
-    model: ColorModel,
+    layout: MomentLayout,
     *,
     vertices: wp.array,
     edges: wp.array,
@@ -158,7 +158,7 @@ def record_edge_moments(
 
     Args:
         device: Where to run.
-        model: Fixes the moments.
+        layout: Fixes the moments and their integers.
         vertices: Positions [px], [V] vec2d.
         edges: Vertex numbers of both ends, [E] vec2i.
         moved: 1 where a vertex has moved since the sums were taken, [V]; the nine versions of an
@@ -166,8 +166,8 @@ def record_edge_moments(
         probe: How far ends are displaced [1/256 px], [1].
         table: Prefix sums of the image, see `image_tables`.
         size: Width and height of the image [px].
-        color_out: Colour moments, [E, versions] vectors of 4 K int64.
-        area_out: Area moments, [E, versions] vectors of G int64.
+        color_out: Colour moments, [E, versions] vectors of 4 K integers.
+        area_out: Area moments, [E, versions] vectors of G integers.
         versions: 9 for the gradient, 1 for the edge itself alone.
 
     Source: Lawonn & Guenther (2018), Sec. 4.1-4.2, Eqs. 11, 13-15.
@@ -175,7 +175,8 @@ def record_edge_moments(
         the same.
     """
     inputs = [vertices, edges, moved, probe, table, size[0], size[1]]
-    # versions share vector registers on a CPU; on CUDA more threads are worth more
-    lanes = 1 if device.is_cuda else versions
-    kernel = _edge_kernel(model, versions, lanes)
+    # versions share vector registers on a CPU, unless the sums of one fill them all; on CUDA more
+    # threads are worth more
+    lanes = 1 if device.is_cuda or layout.wide else versions
+    kernel = _edge_kernel(layout, versions, lanes)
     return device.record(kernel, inputs, [color_out, area_out], per_element=versions // lanes)

@@ -8,9 +8,9 @@ from typing import Any
 
 import warp as wp
 
-from warp_kernels.color_model import ColorModel
 from warp_kernels.device import Device, Phase
-from warp_kernels.moments import area_sums_left_of, color_sums_of_pixel, moment_types
+from warp_kernels.moment_layout import MomentLayout, moment_types
+from warp_kernels.moments import area_sums_of_pixel, color_sums_of_pixel
 from warp_kernels.raster import first_row_below, to_fixed, winding
 from warp_kernels.variants import TRIANGLE_VARIANTS, displacement
 
@@ -18,11 +18,12 @@ wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 
 
 @cache
-def _fragment_kernel(model: ColorModel) -> Any:
-    types = moment_types(model)
-    color_type, area_type, powers_type = types.color, types.area, types.powers
-    color_sums = color_sums_of_pixel(model)
-    area_sums = area_sums_left_of(model)
+def _fragment_kernel(layout: MomentLayout) -> Any:
+    types = moment_types(layout)
+    color_type, area_type, integer = types.color, types.area, types.integer
+    color_sums = color_sums_of_pixel(layout)
+    area_sums = area_sums_of_pixel(layout)
+    wide = layout.wide
 
     @wp.kernel(enable_backward=False, module="unique")
     def sum_fragments(
@@ -32,7 +33,7 @@ def _fragment_kernel(model: ColorModel) -> Any:
         triangles: wp.array(dtype=wp.vec3i),
         probe: wp.array(dtype=int),
         pixels: wp.array2d(dtype=wp.vec3ub),
-        powers: wp.array(dtype=powers_type),
+        weights: wp.array2d(dtype=wp.uint8),
         # Out:
         color_out: wp.array2d(dtype=color_type),
         area_out: wp.array2d(dtype=area_type),
@@ -64,32 +65,35 @@ def _fragment_kernel(model: ColorModel) -> Any:
         color_out[triangle, variant] = color_type()
         area_out[triangle, variant] = area_type()
         for row in range(top, bottom):
-            y = wp.int64(row - height / 2)
+            y = integer(row - height / 2)
             for column in range(left, right):
-                inside = wp.int64(
+                inside = (
                     winding(a, b, column, row)
                     + winding(b, c, column, row)
                     + winding(c, a, column, row)
                 )
-                if inside != wp.int64(0):
-                    x = wp.int64(column - width / 2)
-                    color = color_sums(pixels[row, column], x, y)
-                    area = area_sums(powers[column + 1] - powers[column], y)
-                    wp.atomic_add(color_out, triangle, variant, inside * color)
-                    wp.atomic_add(area_out, triangle, variant, inside * area)
+                if inside != 0:
+                    x = integer(column - width / 2)
+                    weight = integer(inside)
+                    if wp.static(wide):
+                        weight *= integer(weights[row, column])
+                    color = color_sums(pixels[row, column], weight, x, y)
+                    area = area_sums(weight, x, y)
+                    wp.atomic_add(color_out, triangle, variant, color)
+                    wp.atomic_add(area_out, triangle, variant, area)
 
     return sum_fragments
 
 
 def record_fragment_moments(
     device: Device,
-    model: ColorModel,
+    layout: MomentLayout,
     *,
     vertices: wp.array,
     triangles: wp.array,
     probe: wp.array,
     pixels: wp.array,
-    powers: wp.array,
+    weights: wp.array,
     color_out: wp.array,
     area_out: wp.array,
 ) -> Phase:
@@ -100,18 +104,18 @@ def record_fragment_moments(
 
     Args:
         device: Where to run.
-        model: Fixes the moments.
+        layout: Fixes the moments and their integers.
         vertices: Positions [px], [V] vec2d.
         triangles: Corners, [T] vec3i.
         probe: How far corners are displaced [1/256 px], [1].
         pixels: Code values, [H, W] vec3ub.
-        powers: Sums of x^a left of each column, [W + 1] vectors.
-        color_out: Colour moments, [T, 13] vectors of 4 K int64.
-        area_out: Area moments, [T, 13] vectors of G int64.
+        weights: Weight of every pixel, [H, W] uint8. Not read in the narrow layout.
+        color_out: Colour moments, [T, 13] vectors of 4 K integers.
+        area_out: Area moments, [T, 13] vectors of G integers.
 
     Source: Lawonn & Guenther (2018), Sec. 4.2.
     Deviation: the error follows from the moments, without a second pass over the fragments.
     """
-    inputs = [vertices, triangles, probe, pixels, powers]
-    kernel = _fragment_kernel(model)
+    inputs = [vertices, triangles, probe, pixels, weights]
+    kernel = _fragment_kernel(layout)
     return device.record(kernel, inputs, [color_out, area_out], per_element=TRIANGLE_VARIANTS)

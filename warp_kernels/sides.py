@@ -5,24 +5,23 @@ from typing import Any
 
 import warp as wp
 
-from warp_kernels.color_model import ColorModel
-from warp_kernels.moments import moment_types
+from warp_kernels.moment_layout import MomentLayout, moment_types
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 
 
 @cache
-def side_sums(model: ColorModel) -> tuple[Any, Any]:
+def side_sums(layout: MomentLayout) -> tuple[Any, Any]:
     """Two wp.funcs: what a version of an edge adds to the sums of a triangle beside it."""
-    types = moment_types(model)
-    color_type, area_type = types.color, types.area
+    types, model = moment_types(layout), layout.model
+    color_type, area_type, integer = types.color, types.area, types.integer
 
     # (n ^ -1) + 1 is -n: a product of 64-bit integers would cost several times more
     @wp.func
     def side_color(sums: wp.array2d(dtype=color_type), side: int, version: int) -> color_type:
         """Colour moments with the sign of the side."""
         color = sums[side >> 1, version]
-        reversed_edge = wp.int64(side & 1)
+        reversed_edge = integer(side & 1)
         for n in range(wp.static(4 * model.term_count)):
             color[n] = (color[n] ^ -reversed_edge) + reversed_edge
         return color
@@ -31,7 +30,7 @@ def side_sums(model: ColorModel) -> tuple[Any, Any]:
     def side_area(sums: wp.array2d(dtype=area_type), side: int, version: int) -> area_type:
         """Area moments with the sign of the side."""
         area = sums[side >> 1, version]
-        reversed_edge = wp.int64(side & 1)
+        reversed_edge = integer(side & 1)
         for n in range(wp.static(model.area_count)):
             area[n] = (area[n] ^ -reversed_edge) + reversed_edge
         return area

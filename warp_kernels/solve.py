@@ -9,10 +9,9 @@ from typing import Any
 
 import warp as wp
 
-from warp_kernels.color_model import ColorModel
 from warp_kernels.device import Device, Phase
 from warp_kernels.fit import fit_moments
-from warp_kernels.moments import moment_types
+from warp_kernels.moment_layout import MomentLayout, moment_types
 from warp_kernels.sides import side_sums
 from warp_kernels.variants import TRIANGLE_VARIANTS, edge_version
 
@@ -26,11 +25,11 @@ SUMS = ("edges", "fragments")
 
 
 @cache
-def _edge_energy_kernel(model: ColorModel) -> Any:
-    types = moment_types(model)
+def _edge_energy_kernel(layout: MomentLayout) -> Any:
+    types = moment_types(layout)
     color_type, area_type = types.color, types.area
-    side_color, side_area = side_sums(model)
-    fit = fit_moments(model)
+    side_color, side_area = side_sums(layout)
+    fit = fit_moments(layout)
 
     energies_type = wp.types.vector(length=TRIANGLE_VARIANTS, dtype=wp.float64)
 
@@ -43,6 +42,7 @@ def _edge_energy_kernel(model: ColorModel) -> Any:
         sides: wp.array(dtype=wp.vec3i),
         color_sums: wp.array2d(dtype=color_type),
         area_sums: wp.array2d(dtype=area_type),
+        gauge: wp.array(dtype=wp.vec3d),
         # Out:
         energies_out: wp.array2d(dtype=wp.float64),
     ):
@@ -63,7 +63,7 @@ def _edge_energy_kernel(model: ColorModel) -> Any:
                 version = edge_version(variant, n, side[n] & 1)
                 color += side_color(color_sums, side[n], version)
                 area += side_area(area_sums, side[n], version)
-            energies[variant] = fit(color, area).energy
+            energies[variant] = fit(color, area, gauge[0]).energy
             variant += 1
         for n in range(wp.static(TRIANGLE_VARIANTS)):
             energies_out[triangle, n] = energies[n]
@@ -72,9 +72,9 @@ def _edge_energy_kernel(model: ColorModel) -> Any:
 
 
 @cache
-def _fragment_energy_kernel(model: ColorModel) -> Any:
-    color_type, area_type = moment_types(model).color, moment_types(model).area
-    fit = fit_moments(model)
+def _fragment_energy_kernel(layout: MomentLayout) -> Any:
+    color_type, area_type = moment_types(layout).color, moment_types(layout).area
+    fit = fit_moments(layout)
 
     @wp.kernel(enable_backward=False, module="unique")
     def solve_variants(
@@ -83,6 +83,7 @@ def _fragment_energy_kernel(model: ColorModel) -> Any:
         sides: wp.array(dtype=wp.vec3i),
         color_sums: wp.array2d(dtype=color_type),
         area_sums: wp.array2d(dtype=area_type),
+        gauge: wp.array(dtype=wp.vec3d),
         # Out:
         energies_out: wp.array2d(dtype=wp.float64),
     ):
@@ -92,7 +93,7 @@ def _fragment_energy_kernel(model: ColorModel) -> Any:
             return
         triangle = number / wp.static(TRIANGLE_VARIANTS)
         variant = number - triangle * wp.static(TRIANGLE_VARIANTS)
-        best = fit(color_sums[triangle, variant], area_sums[triangle, variant])
+        best = fit(color_sums[triangle, variant], area_sums[triangle, variant], gauge[0])
         energies_out[triangle, variant] = best.energy
 
     return solve_variants
@@ -100,7 +101,7 @@ def _fragment_energy_kernel(model: ColorModel) -> Any:
 
 def record_energies(
     device: Device,
-    model: ColorModel,
+    layout: MomentLayout,
     sums: str,
     *,
     triangles: wp.array,
@@ -108,13 +109,14 @@ def record_energies(
     sides: wp.array,
     color_sums: wp.array,
     area_sums: wp.array,
+    gauge: wp.array,
     energies_out: wp.array,
 ) -> Phase:
     """Prepare the launch that finds E of all thirteen variants of every triangle.
 
     Args:
         device: Where to run.
-        model: The polynomial colour.
+        layout: The polynomial colour and its integers.
         sums: "edges" or "fragments", the way in which the moments were summed.
         triangles: Corners, [T] vec3i. Not read with "fragments".
         moved: 1 where a vertex has moved since the energies were found, [V]; with "edges" those
@@ -123,15 +125,16 @@ def record_energies(
             [T] vec3i. Not read with "fragments".
         color_sums: [E, 9] with "edges", [T, 13] with "fragments".
         area_sums: As `color_sums`.
+        gauge: The scale of energies and the size of the picture, see `fit`, [1] vec3d.
         energies_out: E(T) [code value^2 px], [T, 13].
 
     Source: Lawonn & Guenther (2018), Eqs. 4, 13-15 (without the 1 / q of Eq. 13, so that energies
         add up, as Eq. 12 needs).
     """
     if sums == "edges":
-        kernel = _edge_energy_kernel(model)
-        inputs = [triangles, moved, sides, color_sums, area_sums]
+        kernel = _edge_energy_kernel(layout)
+        inputs = [triangles, moved, sides, color_sums, area_sums, gauge]
         return device.record(kernel, inputs, [energies_out], smallest_part=SMALLEST_PART)
-    inputs = [sides, color_sums, area_sums]
-    kernel = _fragment_energy_kernel(model)
+    inputs = [sides, color_sums, area_sums, gauge]
+    kernel = _fragment_energy_kernel(layout)
     return device.record(kernel, inputs, [energies_out], per_element=TRIANGLE_VARIANTS)

@@ -89,19 +89,21 @@ class Survey:
             half_edges=self._half_edges,
             twins=self._twins,
             corners=self._corners,
-            fan_offsets=workspace.fan_offsets,
-            fan_corners=workspace.fan_corners,
             vertices=workspace.standing,
             energies=workspace.fit_energies,
+            sides=workspace.sides,
+            color_sums=workspace.fit_color_sums,
+            area_sums=workspace.fit_area_sums,
             table=workspace.table,
             powers=workspace.powers,
             limits=self._limits,
+            gauge=workspace.gauge,
             changes_out=self._changes,
             points_out=self._points,
         )
-        device, model, height = workspace.device, workspace.model, workspace.size[1]
+        device, layout, height = workspace.device, workspace.layout, workspace.size[1]
         if change == "flip":
-            return record_flip_gains(device, model, arrays, height=height)
+            return record_flip_gains(device, layout, arrays, height=height)
         if change == "split":
-            return record_split_gains(device, model, arrays, height=height)
-        return record_collapse_costs(device, model, arrays, height=height)
+            return record_split_gains(device, layout, arrays, height=height)
+        return record_collapse_costs(device, layout, arrays, height=height)

@@ -6,11 +6,10 @@ from typing import Any
 
 import warp as wp
 
-from warp_kernels.color_model import ColorModel
 from warp_kernels.descend import smallest_height
 from warp_kernels.device import Device, Phase
-from warp_kernels.moments import moment_types
-from warp_kernels.triangle_energy import triangle_energy
+from warp_kernels.moment_layout import MomentLayout, moment_types
+from warp_kernels.triangle_energy import line_sums
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 
@@ -32,20 +31,24 @@ class SurveyArrays:
     """The half-edge that runs the other way, -1 on the border, [3 T] int."""
     corners: wp.array
     """Vertex number of every half-edge's origin, [3 T] int."""
-    fan_offsets: wp.array
-    """Where each vertex's corners begin in `fan_corners`, [V + 1] int."""
-    fan_corners: wp.array
-    """Corner numbers 3 t + c around each vertex, [3 T] int."""
     vertices: wp.array
     """Positions [px], [V] vec2d."""
     energies: wp.array
     """E(T) as it stands [code value^2 px], [T] float64."""
+    sides: wp.array
+    """For each side of a triangle 2 * edge + (1 where the edge runs the other way), [T] vec3i."""
+    color_sums: wp.array
+    """Colour moments left of every edge as it stands, [E, 1] vectors."""
+    area_sums: wp.array
+    """Area moments left of every edge, [E, 1] vectors."""
     table: wp.array
     """Prefix sums of the image, see `image_tables`."""
     powers: wp.array
     """Sums of x^a left of each column, [W + 1] vectors."""
     limits: wp.array
     """Smallest height [px] and largest area [px^2] of the triangles that a change makes, [2]."""
+    gauge: wp.array
+    """The scale of energies and the size of the picture, see `fit`."""
     changes_out: wp.array
     """Change of energy [code value^2 px], [N] float64; its sign is the launcher's."""
     points_out: wp.array
@@ -66,10 +69,26 @@ def corner_after(half_edge: int) -> int:
     return half_edge - half_edge % 3 + (half_edge + 1) % 3
 
 
+@wp.func
+def corner_before(half_edge: int) -> int:
+    """The previous half-edge of the same triangle."""
+    return half_edge - half_edge % 3 + (half_edge + 2) % 3
+
+
+@wp.func
+def split_place(
+    a: wp.vec2d, b: wp.vec2d, c: wp.vec2d, d: wp.vec2d, share: wp.float64, lift: wp.float64
+) -> wp.vec2d:
+    """One of `SPLIT_PLACES` on the edge a b or beside it, towards c or d [px]."""
+    zero = wp.float64(0.0)
+    m = a + share * (b - a)
+    return m + wp.max(lift, zero) * (c - m) + wp.max(-lift, zero) * (d - m)
+
+
 @cache
-def _flip_kernel(model: ColorModel) -> Any:
-    powers_type = moment_types(model).powers
-    energy = triangle_energy(model)
+def _flip_kernel(layout: MomentLayout) -> Any:
+    types = moment_types(layout)
+    along, known, energy = line_sums(layout)
 
     @wp.kernel(enable_backward=False, module="unique")
     def flip_gains(
@@ -80,8 +99,12 @@ def _flip_kernel(model: ColorModel) -> Any:
         corners: wp.array(dtype=int),
         vertices: wp.array(dtype=wp.vec2d),
         energies: wp.array(dtype=wp.float64),
-        table: wp.array(dtype=wp.vec4i),
-        powers: wp.array(dtype=powers_type),
+        sides: wp.array(dtype=wp.vec3i),
+        color_sums: wp.array2d(dtype=types.color),
+        area_sums: wp.array2d(dtype=types.area),
+        table: wp.array(dtype=types.entry),
+        powers: wp.array(dtype=types.powers),
+        gauge: wp.array(dtype=wp.vec3d),
         height: int,
         limits: wp.array(dtype=wp.float64),
         # Out:
@@ -97,36 +120,44 @@ def _flip_kernel(model: ColorModel) -> Any:
         if twin >= 0:
             a = vertices[corners[side]]
             b = vertices[corners[twin]]
-            c = vertices[corners[corner_after(corner_after(side))]]
-            d = vertices[corners[corner_after(corner_after(twin))]]
+            c = vertices[corners[corner_before(side)]]
+            d = vertices[corners[corner_before(twin)]]
             if allowed(a, d, c, limits) and allowed(b, c, d, limits):
+                bc = known(corner_after(side), sides, color_sums, area_sums)
+                ca = known(corner_before(side), sides, color_sums, area_sums)
+                ad = known(corner_after(twin), sides, color_sums, area_sums)
+                db = known(corner_before(twin), sides, color_sums, area_sums)
+                dc = along(d, c, table, powers, height)
                 gains_out[number] = (
                     energies[side / 3]
                     + energies[twin / 3]
-                    - energy(a, d, c, table, powers, height)
-                    - energy(b, c, d, table, powers, height)
+                    - energy(ad, 1, dc, 1, ca, 1, gauge[0])
+                    - energy(bc, 1, dc, -1, db, 1, gauge[0])
                 )
 
     return flip_gains
 
 
 @cache
-def _collapse_kernel(model: ColorModel) -> Any:
-    powers_type = moment_types(model).powers
-    energy = triangle_energy(model)
+def _collapse_kernel(layout: MomentLayout) -> Any:
+    types = moment_types(layout)
+    along, known, energy = line_sums(layout)
 
     @wp.kernel(enable_backward=False, module="unique")
     def collapse_costs(
         span: wp.array(dtype=wp.vec2i),
         # In:
         half_edges: wp.array(dtype=int),
+        twins: wp.array(dtype=int),
         corners: wp.array(dtype=int),
-        fan_offsets: wp.array(dtype=int),
-        fan_corners: wp.array(dtype=int),
         vertices: wp.array(dtype=wp.vec2d),
         energies: wp.array(dtype=wp.float64),
-        table: wp.array(dtype=wp.vec4i),
-        powers: wp.array(dtype=powers_type),
+        sides: wp.array(dtype=wp.vec3i),
+        color_sums: wp.array2d(dtype=types.color),
+        area_sums: wp.array2d(dtype=types.area),
+        table: wp.array(dtype=types.entry),
+        powers: wp.array(dtype=types.powers),
+        gauge: wp.array(dtype=wp.vec3d),
         height: int,
         limits: wp.array(dtype=wp.float64),
         # Out:
@@ -137,31 +168,37 @@ def _collapse_kernel(model: ColorModel) -> Any:
         if number >= span[0][1]:
             return
         side = half_edges[number]
-        origin = corners[side]
         goal = corners[corner_after(side)]
-        cost = wp.float64(0.0)
-        for n in range(fan_offsets[origin], fan_offsets[origin + 1]):
-            at = fan_corners[n]
+        a = vertices[goal]
+        cost = -energies[side / 3]
+        # from triangle to triangle around the origin; the first holds the destination
+        spoke = known(corner_after(side), sides, color_sums, area_sums)
+        at = twins[corner_before(side)]
+        while at >= 0 and corners[corner_before(at)] != goal:
             cost -= energies[at / 3]
-            second = corners[corner_after(at)]
-            third = corners[corner_after(corner_after(at))]
-            if second != goal and third != goal:
-                a = vertices[goal]
-                b = vertices[second]
-                c = vertices[third]
-                if not allowed(a, b, c, limits):
-                    cost += wp.float64(wp.static(IMPOSSIBLE))
-                elif cost < wp.float64(wp.static(0.5 * IMPOSSIBLE)):
-                    cost += energy(a, b, c, table, powers, height)
+            b = vertices[corners[corner_after(at)]]
+            c = vertices[corners[corner_before(at)]]
+            if not allowed(a, b, c, limits):
+                cost += wp.float64(wp.static(IMPOSSIBLE))
+            if cost < wp.float64(wp.static(0.5 * IMPOSSIBLE)):
+                rim = known(corner_after(at), sides, color_sums, area_sums)
+                following = along(a, c, table, powers, height)
+                cost += energy(spoke, 1, rim, 1, following, -1, gauge[0])
+                spoke = following
+            at = twins[corner_before(at)]
+        if at >= 0:
+            cost -= energies[at / 3]  # the other one that holds the destination
+        elif twins[side] >= 0:
+            cost = wp.float64(wp.static(IMPOSSIBLE))  # a border vertex may not go inwards
         costs_out[number] = cost
 
     return collapse_costs
 
 
 @cache
-def _split_kernel(model: ColorModel) -> Any:
-    powers_type = moment_types(model).powers
-    energy = triangle_energy(model)
+def _split_kernel(layout: MomentLayout) -> Any:
+    types = moment_types(layout)
+    along, known, energy = line_sums(layout)
 
     @wp.kernel(enable_backward=False, module="unique")
     def split_gains(
@@ -172,8 +209,12 @@ def _split_kernel(model: ColorModel) -> Any:
         corners: wp.array(dtype=int),
         vertices: wp.array(dtype=wp.vec2d),
         energies: wp.array(dtype=wp.float64),
-        table: wp.array(dtype=wp.vec4i),
-        powers: wp.array(dtype=powers_type),
+        sides: wp.array(dtype=wp.vec3i),
+        color_sums: wp.array2d(dtype=types.color),
+        area_sums: wp.array2d(dtype=types.area),
+        table: wp.array(dtype=types.entry),
+        powers: wp.array(dtype=types.powers),
+        gauge: wp.array(dtype=wp.vec3d),
         height: int,
         limits: wp.array(dtype=wp.float64),
         # Out:
@@ -188,32 +229,34 @@ def _split_kernel(model: ColorModel) -> Any:
         twin = twins[side]
         a = vertices[corners[side]]
         b = vertices[corners[corner_after(side)]]
-        c = vertices[corners[corner_after(corner_after(side))]]
+        c = vertices[corners[corner_before(side)]]
         d = c
         before = energies[side / 3]
         if twin >= 0:
-            d = vertices[corners[corner_after(corner_after(twin))]]
+            d = vertices[corners[corner_before(twin)]]
             before += energies[twin / 3]
+        bc = known(corner_after(side), sides, color_sums, area_sums)
+        ca = known(corner_before(side), sides, color_sums, area_sums)
+        ad = known(corner_after(wp.max(twin, 0)), sides, color_sums, area_sums)
+        db = known(corner_before(wp.max(twin, 0)), sides, color_sums, area_sums)
         best = -wp.float64(wp.static(IMPOSSIBLE))
         point = wp.float64(0.5) * (a + b)
         for place in range(wp.static(len(SPLIT_PLACES))):
             lift = wp.float64(wp.static(SPLIT_PLACES[place][1]))
-            m = a + wp.float64(wp.static(SPLIT_PLACES[place][0])) * (b - a)
-            if wp.static(SPLIT_PLACES[place][1] > 0.0):
-                m = m + lift * (c - m)
-            if wp.static(SPLIT_PLACES[place][1] < 0.0):
-                m = m - lift * (d - m)
-            possible = allowed(a, m, c, limits) and allowed(m, b, c, limits)
+            m = split_place(a, b, c, d, wp.float64(wp.static(SPLIT_PLACES[place][0])), lift)
+            possible = twin >= 0 or lift == wp.float64(0.0)  # a border vertex lies on the border
             if twin >= 0:
-                possible = possible and allowed(m, a, d, limits) and allowed(b, m, d, limits)
-            elif wp.static(SPLIT_PLACES[place][1] != 0.0):
-                possible = False
-            if possible:
-                gain = before - energy(a, m, c, table, powers, height)
-                gain -= energy(m, b, c, table, powers, height)
+                possible = allowed(m, a, d, limits) and allowed(b, m, d, limits)
+            if possible and allowed(a, m, c, limits) and allowed(m, b, c, limits):
+                am = along(a, m, table, powers, height)
+                mb = along(m, b, table, powers, height)
+                mc = along(m, c, table, powers, height)
+                gain = before - energy(am, 1, mc, 1, ca, 1, gauge[0])
+                gain -= energy(mb, 1, bc, 1, mc, -1, gauge[0])
                 if twin >= 0:
-                    gain -= energy(m, a, d, table, powers, height)
-                    gain -= energy(b, m, d, table, powers, height)
+                    md = along(m, d, table, powers, height)
+                    gain -= energy(am, -1, ad, 1, md, -1, gauge[0])
+                    gain -= energy(mb, -1, md, 1, db, 1, gauge[0])
                 if gain > best:
                     best = gain
                     point = m
@@ -224,7 +267,7 @@ def _split_kernel(model: ColorModel) -> Any:
 
 
 def record_flip_gains(
-    device: Device, model: ColorModel, arrays: SurveyArrays, *, height: int
+    device: Device, layout: MomentLayout, arrays: SurveyArrays, *, height: int
 ) -> Phase:
     """Prepare the launch that measures every flip.
 
@@ -232,20 +275,28 @@ def record_flip_gains(
 
     Args:
         device: Where to run.
-        model: The polynomial colour.
+        layout: The polynomial colour and its integers.
         arrays: What is read and written; half-edges stand for their edges.
         height: Rows of the image [px].
 
     Deviation: the paper flips for the Delaunay property alone (Sec. 3.4).
     """
     mesh = [arrays.half_edges, arrays.twins, arrays.corners, arrays.vertices, arrays.energies]
-    picture = [arrays.table, arrays.powers, height]
+    picture = [
+        arrays.sides,
+        arrays.color_sums,
+        arrays.area_sums,
+        arrays.table,
+        arrays.powers,
+        arrays.gauge,
+        height,
+    ]
     inputs = [*mesh, *picture, arrays.limits]
-    return device.record(_flip_kernel(model), inputs, [arrays.changes_out])
+    return device.record(_flip_kernel(layout), inputs, [arrays.changes_out])
 
 
 def record_collapse_costs(
-    device: Device, model: ColorModel, arrays: SurveyArrays, *, height: int
+    device: Device, layout: MomentLayout, arrays: SurveyArrays, *, height: int
 ) -> Phase:
     """Prepare the launch that measures every half-edge collapse.
 
@@ -253,22 +304,29 @@ def record_collapse_costs(
 
     Args:
         device: Where to run.
-        model: The polynomial colour.
+        layout: The polynomial colour and its integers.
         arrays: What is read and written; the origins of half-edges move into their destinations.
         height: Rows of the image [px].
 
     Deviation: the paper collapses triangles of small area on their shortest edge (Sec. 3.4).
     """
-    fans = [arrays.fan_offsets, arrays.fan_corners]
-    mesh = [arrays.half_edges, arrays.corners, *fans, arrays.vertices, arrays.energies]
-    picture = [arrays.table, arrays.powers, height]
+    mesh = [arrays.half_edges, arrays.twins, arrays.corners, arrays.vertices, arrays.energies]
+    picture = [
+        arrays.sides,
+        arrays.color_sums,
+        arrays.area_sums,
+        arrays.table,
+        arrays.powers,
+        arrays.gauge,
+        height,
+    ]
     inputs = [*mesh, *picture, arrays.limits]
-    return device.record(_collapse_kernel(model), inputs, [arrays.changes_out])
+    return device.record(_collapse_kernel(layout), inputs, [arrays.changes_out])
 
 
 def record_split_gains(
     device: Device,
-    model: ColorModel,
+    layout: MomentLayout,
     arrays: SurveyArrays,
     *,
     height: int,
@@ -279,14 +337,22 @@ def record_split_gains(
 
     Args:
         device: Where to run.
-        model: The polynomial colour.
+        layout: The polynomial colour and its integers.
         arrays: What is read and written; half-edges stand for their edges.
         height: Rows of the image [px].
 
     Deviation: the paper splits the triangles of the largest error at their centroids (Sec. 3.4).
     """
     mesh = [arrays.half_edges, arrays.twins, arrays.corners, arrays.vertices, arrays.energies]
-    picture = [arrays.table, arrays.powers, height]
+    picture = [
+        arrays.sides,
+        arrays.color_sums,
+        arrays.area_sums,
+        arrays.table,
+        arrays.powers,
+        arrays.gauge,
+        height,
+    ]
     inputs = [*mesh, *picture, arrays.limits]
     outputs = [arrays.changes_out, arrays.points_out]
-    return device.record(_split_kernel(model), inputs, outputs)
+    return device.record(_split_kernel(layout), inputs, outputs)

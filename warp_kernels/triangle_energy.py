@@ -1,62 +1,99 @@
-"""The error of a triangle that is not in the mesh: what a change of topology would leave."""
+"""The error of a triangle that is not in the mesh: what a change of topology would leave.
+
+Triangles around a new vertex share the lines that lead to it, and the sums along a line are those
+of the way back with the other sign: every line is walked once.
+"""
 
 from functools import cache
 from typing import Any
 
 import warp as wp
 
-from warp_kernels.color_model import ColorModel
 from warp_kernels.fit import fit_moments
 from warp_kernels.image_tables import table_entry
-from warp_kernels.moments import area_sums_left_of, color_sums_left_of, moment_types
+from warp_kernels.moment_layout import MomentLayout, moment_types
+from warp_kernels.moments import area_sums_left_of, color_sums_left_of
 from warp_kernels.raster import column_of, to_fixed, walk_edge
+from warp_kernels.sides import side_sums
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 
 
 @cache
-def triangle_energy(model: ColorModel) -> Any:
-    """A wp.func: E of the triangle a, b, c [px] from nine numbers and the picture's tables."""
-    types = moment_types(model)
-    color_type, area_type, powers_type = types.color, types.area, types.powers
-    color_sums = color_sums_left_of(model)
-    area_sums = area_sums_left_of(model)
-    depth = model.table_depth
-    fit = fit_moments(model)
+def line_sums(layout: MomentLayout) -> tuple[Any, Any, Any]:
+    """What lies left of lines, and the energy of triangles between them: three wp.funcs.
+
+    Returns:
+        `along` gives the sums along a line between two points [px] from the picture's tables;
+        `known` those along a half-edge of the mesh, which `fit` has summed already; `energy`
+        takes those of a triangle's three sides, each with the sign 1, or -1 where the line runs
+        the other way.
+    """
+    types = moment_types(layout)
+    color_type, area_type, integer = types.color, types.area, types.integer
+    color_sums = color_sums_left_of(layout)
+    area_sums = area_sums_left_of(layout)
+    depth = layout.depth
+    fit = fit_moments(layout)
+    side_color, side_area = side_sums(layout)
+
+    @wp.struct
+    class Line:
+        """Sums of everything left of a line."""
+
+        color: color_type
+        area: area_type
 
     @wp.func
-    def energy(
-        a: wp.vec2d,
-        b: wp.vec2d,
-        c: wp.vec2d,
-        table: wp.array(dtype=wp.vec4i),
-        powers: wp.array(dtype=powers_type),
+    def along(
+        tail: wp.vec2d,
+        head: wp.vec2d,
+        table: wp.array(dtype=types.entry),
+        powers: wp.array(dtype=types.powers),
         height: int,
-    ) -> wp.float64:
-        """Sum along the three edges, then solve."""
+    ) -> Line:
+        """Walk down the rows that a line crosses."""
         width = powers.shape[0] - 1
         color = color_type()
         area = area_type()
-        for side in range(3):
-            tail = a
-            head = b
-            if side == 1:
-                tail = b
-                head = c
-            if side == 2:
-                tail = c
-                head = a
-            walk = walk_edge(to_fixed(tail), to_fixed(head), height)
-            sign = wp.int64(walk.sign)
-            row = walk.row_begin
-            while row < walk.row_end:
-                column = wp.clamp(column_of(walk.position), 0, width)
-                y = wp.int64(row - height / 2)
-                entry = table_entry(row, column, width, wp.static(depth))
-                color += sign * color_sums(table, entry, y)
-                area += sign * area_sums(powers[column], y)
-                walk.position += walk.step
-                row += 1
-        return fit(color, area).energy
+        walk = walk_edge(to_fixed(tail), to_fixed(head), height)
+        row = walk.row_begin
+        while row < walk.row_end:
+            column = wp.clamp(column_of(walk.position), 0, width)
+            y = wp.int64(row - height / 2)
+            entry = table_entry(row, column, width, wp.static(depth))
+            color += color_sums(table, entry, y)
+            area += area_sums(table, entry, powers[column], y)
+            walk.position += walk.step
+            row += 1
+        line = Line()
+        line.color = integer(walk.sign) * color
+        line.area = integer(walk.sign) * area
+        return line
 
-    return energy
+    @wp.func
+    def known(
+        half_edge: int,
+        sides: wp.array(dtype=wp.vec3i),
+        color_sums: wp.array2d(dtype=color_type),
+        area_sums: wp.array2d(dtype=area_type),
+    ) -> Line:
+        """Read the sums of an edge of the mesh, seen from one of its half-edges."""
+        side = sides[half_edge / 3][half_edge % 3]
+        line = Line()
+        line.color = side_color(color_sums, side, 0)
+        line.area = side_area(area_sums, side, 0)
+        return line
+
+    @wp.func
+    def energy(
+        ab: Line, ab_sign: int, bc: Line, bc_sign: int, ca: Line, ca_sign: int, gauge: wp.vec3d
+    ) -> wp.float64:
+        """Add the three sides, then solve."""
+        color = integer(ab_sign) * ab.color + integer(bc_sign) * bc.color
+        area = integer(ab_sign) * ab.area + integer(bc_sign) * bc.area
+        return fit(
+            color + integer(ca_sign) * ca.color, area + integer(ca_sign) * ca.area, gauge
+        ).energy
+
+    return along, known, energy

@@ -16,7 +16,9 @@ from warp_kernels.edge_moments import record_edge_moments
 from warp_kernels.fit import record_fit
 from warp_kernels.fragments import record_fragment_moments
 from warp_kernels.image_tables import record_image_tables, table_length
-from warp_kernels.moments import check_size, column_powers, moment_types
+from warp_kernels.moment_layout import layout_of_moments, moment_types
+from warp_kernels.moments import check_size, column_powers
+from warp_kernels.pixel_weights import reduced_weights
 from warp_kernels.raster import SUBPIXELS
 from warp_kernels.solve import record_energies
 from warp_kernels.variants import EDGE_VERSIONS, TRIANGLE_VARIANTS
@@ -37,7 +39,7 @@ class Workspace:
         size: Width and height of the picture [px].
         model: The colour model to optimise.
         sums: "edges", or "fragments" for the paper's own way.
-        weighted: Whether pixels have weights; placeholder.
+        weighted: Whether pictures come with weights.
 
     Raises:
         OptionError: If the picture is so large that a sum could leave its integers.
@@ -56,15 +58,26 @@ class Workspace:
         self.size = size
         self.model = model
         self.sums = sums
+        self.weighted = weighted
+        self.layout = layout_of_moments(model, weighted=weighted)
         width, height = size
-        types = moment_types(model)
+        types = moment_types(self.layout)
         self._pixels = self._empty((height, width), wp.vec3ub)
-        self.table = self._empty(table_length(width, height, model), wp.vec4i)
+        self._weights = self._empty((height, width) if self.layout.wide else (1, 1), wp.uint8)
+        self.gauge = self._empty(1, wp.vec3d)
+        self._load_weights(None)
+        self.table = self._empty(table_length(width, height, self.layout), types.entry)
         self.powers = wp.array(column_powers(width, model), dtype=types.powers, device=device.warp)
         self._controls = self._empty(3, wp.float64)
         self._probe = self._empty(1, wp.int32)
         self._displacement = 0.0
-        self._tables = record_image_tables(device, model, pixels=self._pixels, table_out=self.table)
+        self._tables = record_image_tables(
+            device,
+            self.layout,
+            pixels=self._pixels,
+            weights=self._weights,
+            table_out=self.table,
+        )
         self._counts = (0, 0, 0)
         self.generation = 0
         """How often the arrays have moved: what was recorded over them before is void."""
@@ -74,14 +87,34 @@ class Workspace:
     def load_image(self, pixels: np.ndarray, weights: np.ndarray | None = None) -> None:
         """Take in a picture and build its prefix tables.
 
+        Only the ratios of weights matter: they are divided by their greatest common divisor, so
+        weights that are all equal give the bits that no weights give.
+
         Args:
             pixels: Code values, [H, W, 3] uint8.
-            weights: Weights, [H, W] uint8; placeholder, not summed yet.
+            weights: How much the error of every pixel counts, 1 to 255 with 0 taken as 1, [H, W]
+                uint8; None for all alike.
+
+        Raises:
+            ValueError: If the workspace takes no weights or they do not fit the picture.
+
+        Deviation: the paper has no weights.
         """
-        if weights is not None:
-            raise NotImplementedError("weights are not summed yet")
         self.device.write(self._pixels, pixels)
+        if self.weighted:
+            self._load_weights(weights)
+        elif weights is not None:
+            raise ValueError("this workspace takes no weights; make it with weighted=True")
         self.device.run([self._tables])
+
+    def _load_weights(self, weights: np.ndarray | None) -> None:
+        """Write weights without a common divisor, and the scale of the energies they lead to."""
+        width, height = self.size
+        reduced, mean = np.ones(self._weights.shape, dtype=np.uint8), 1.0
+        if weights is not None:
+            reduced, mean = reduced_weights(weights, self.size)
+        self.device.write(self._weights, reduced)
+        self.device.write(self.gauge, np.array([[1.0 / mean, width // 2, height // 2]]))
 
     def load_mesh(
         self,
@@ -114,9 +147,9 @@ class Workspace:
             (self._vertices[0], vertices),
             (self.triangles, triangles),
             (self._edges, edges),
-            (self._sides, sides),
-            (self.fan_offsets, fan_offsets),
-            (self.fan_corners, fan_corners),
+            (self.sides, sides),
+            (self._fan_offsets, fan_offsets),
+            (self._fan_corners, fan_corners),
             (self._freedom, freedom),
             (self._anchors, anchors),
         ):
@@ -184,17 +217,22 @@ class Workspace:
         return float(self.device.read(self._energies, self._counts[1])[:, 0].sum())
 
     def moments(self) -> tuple[np.ndarray, np.ndarray]:
-        """Colour and area sums as they stand: [E, 9, .] with edges, [T, 13, .] with fragments."""
+        """Colour and area sums as they stand: [E, 9, .] with edges, [T, 13, .] with fragments.
+
+        int64; in the wide layout the highest powers modulo 2^64.
+        """
         self._displace(DISPLACEMENT)
         self.device.run([self._moments[self._front]])
         count = self._counts[2] if self.sums == "edges" else self._counts[1]
-        return self.device.read(self._color_sums, count), self.device.read(self._area_sums, count)
+        color, area = (self.device.read(s, count) for s in (self._color_sums, self._area_sums))
+        return color.view(np.int64), area.view(np.int64)
 
     def fit(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Best colours of the mesh as it stands.
 
         Returns:
-            Coefficients [T, 3, K] float64, energies [T] float64, pixel counts [T] int64.
+            Coefficients [T, 3, K] float64, energies [T] float64, and counts [T] int64: the pixels
+            covered, or with weights the sum of theirs after division by the common divisor.
         """
         self.device.run([self._fit_sums[self._front], self._fit])
         count = self._counts[1]
@@ -224,16 +262,16 @@ class Workspace:
         self._capacity = (vertices, triangles)
         self.generation += 1
         edges = vertices + triangles + 1  # Euler: E = V + T - 1 in a disc
-        types = moment_types(self.model)
+        types = moment_types(self.layout)
         rows = (edges, EDGE_VERSIONS)
         if self.sums == "fragments":
             rows = (triangles, TRIANGLE_VARIANTS)
         self._vertices = (self._empty(vertices, wp.vec2d), self._empty(vertices, wp.vec2d))
         self.triangles = self._empty(triangles, wp.vec3i)
         self._edges = self._empty(edges, wp.vec2i)
-        self._sides = self._empty(triangles, wp.vec3i)
-        self.fan_offsets = self._empty(vertices + 1, wp.int32)
-        self.fan_corners = self._empty(3 * triangles, wp.int32)
+        self.sides = self._empty(triangles, wp.vec3i)
+        self._fan_offsets = self._empty(vertices + 1, wp.int32)
+        self._fan_corners = self._empty(3 * triangles, wp.int32)
         self._freedom = self._empty(vertices, wp.vec2d)
         self._anchors = self._empty(vertices, wp.vec3d)
         self._memory = self._empty(vertices, wp.vec4d)
@@ -241,8 +279,8 @@ class Workspace:
         self._color_sums = self._empty(rows, types.color)
         self._area_sums = self._empty(rows, types.area)
         self._energies = self._empty((triangles, TRIANGLE_VARIANTS), wp.float64)
-        self._fit_color_sums = self._empty((edges, 1), types.color)
-        self._fit_area_sums = self._empty((edges, 1), types.area)
+        self.fit_color_sums = self._empty((edges, 1), types.color)
+        self.fit_area_sums = self._empty((edges, 1), types.area)
         self._coefficients = self._empty((triangles, 3, self.model.term_count), wp.float64)
         self.fit_energies = self._empty(triangles, wp.float64)
         self._fit_counts = self._empty(triangles, wp.int64)
@@ -258,13 +296,14 @@ class Workspace:
         self._moments = [self._record_moments(front) for front in self._vertices]
         self._energy = record_energies(
             self.device,
-            self.model,
+            self.layout,
             self.sums,
             triangles=self.triangles,
             moved=self._moved,
-            sides=self._sides,
+            sides=self.sides,
             color_sums=self._color_sums,
             area_sums=self._area_sums,
+            gauge=self.gauge,
             energies_out=self._energies,
         )
         self._descents = [
@@ -273,8 +312,8 @@ class Workspace:
                 vertices=self._vertices[front],
                 triangles=self.triangles,
                 energies=self._energies,
-                fan_offsets=self.fan_offsets,
-                fan_corners=self.fan_corners,
+                fan_offsets=self._fan_offsets,
+                fan_corners=self._fan_corners,
                 freedom=self._freedom,
                 anchors=self._anchors,
                 probe=self._probe,
@@ -291,25 +330,26 @@ class Workspace:
         self._fit_sums = [
             record_edge_moments(
                 self.device,
-                self.model,
+                self.layout,
                 vertices=front,
                 edges=self._edges,
                 moved=self._moved,
                 probe=self._probe,
                 table=self.table,
                 size=self.size,
-                color_out=self._fit_color_sums,
-                area_out=self._fit_area_sums,
+                color_out=self.fit_color_sums,
+                area_out=self.fit_area_sums,
                 versions=1,
             )
             for front in self._vertices
         ]
         self._fit = record_fit(
             self.device,
-            self.model,
-            sides=self._sides,
-            color_sums=self._fit_color_sums,
-            area_sums=self._fit_area_sums,
+            self.layout,
+            sides=self.sides,
+            color_sums=self.fit_color_sums,
+            area_sums=self.fit_area_sums,
+            gauge=self.gauge,
             size=self.size,
             coefficients_out=self._coefficients,
             energies_out=self.fit_energies,
@@ -320,18 +360,18 @@ class Workspace:
         if self.sums == "fragments":
             return record_fragment_moments(
                 self.device,
-                self.model,
+                self.layout,
                 vertices=vertices,
                 triangles=self.triangles,
                 probe=self._probe,
                 pixels=self._pixels,
-                powers=self.powers,
+                weights=self._weights,
                 color_out=self._color_sums,
                 area_out=self._area_sums,
             )
         return record_edge_moments(
             self.device,
-            self.model,
+            self.layout,
             vertices=vertices,
             edges=self._edges,
             moved=self._moved,

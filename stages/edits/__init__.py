@@ -11,6 +11,7 @@ from stages.edits.collapse_edges import collapse_edges, collapsible
 from stages.edits.flip_edges import flip_edges, flippable
 from stages.edits.independent import independent_collapses, independent_flips
 from stages.edits.legalise import legalise
+from stages.edits.press import press_onto_border, pressable
 from stages.edits.split import split_edges, split_triangles
 
 __all__ = [
@@ -21,6 +22,8 @@ __all__ = [
     "independent_collapses",
     "independent_flips",
     "legalise",
+    "press_onto_border",
+    "pressable",
     "split_edges",
     "split_triangles",
     "turn_base_edge",

@@ -25,7 +25,10 @@ class Topology(Protocol):
         ...
 
     def adapt(self, mesh: Mesh, appraiser: Appraiser, goal: Goal) -> Mesh:
-        """Bring a mesh closer to a goal by edits; its vertices stay where they are."""
+        """Bring a mesh closer to a goal by edits.
+
+        Vertices stay where they are, but for those that are pressed onto the border close by.
+        """
         ...
 
 

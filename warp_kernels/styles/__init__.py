@@ -15,7 +15,7 @@ class Style(Protocol):
     """What every member of `STYLES` can do."""
 
     degree: ClassVar[int]
-    """Degree of the colour polynomial that the shader looks at."""
+    """Least degree of the colour polynomial that the shader needs."""
     shader: ClassVar[Any]
     """A wp.func `(Scene, StyleParameters, Sample) -> vec4f`: colour [code values], opacity."""
 

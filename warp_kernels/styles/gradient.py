@@ -1,4 +1,4 @@
-"""Every triangle in a linear colour gradient."""
+"""Every triangle in a colour gradient."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -12,10 +12,14 @@ wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 
 @wp.func
 def gradient_color(scene: Scene, parameters: StyleParameters, sample: Sample) -> wp.vec4f:
-    """The best linear colour at the sample, within the range of code values."""
+    """The best linear or quadratic colour at the sample, within the range of code values."""
     t = sample.triangle
     away = sample.position - scene.centres[t]
     color = scene.colors[t] + away[0] * scene.gradients[t, 0] + away[1] * scene.gradients[t, 1]
+    if scene.curved[0] != 0:
+        bent = away[0] * scene.curvatures[t, 1] + away[1] * scene.curvatures[t, 2]
+        color += scene.curvatures[t, 0] + away[0] * bent
+        color += away[1] * away[1] * scene.curvatures[t, 3]
     return wp.vec4f(
         wp.clamp(color[0], 0.0, 255.0),
         wp.clamp(color[1], 0.0, 255.0),
@@ -26,9 +30,10 @@ def gradient_color(scene: Scene, parameters: StyleParameters, sample: Sample) ->
 
 @dataclass(frozen=True)
 class Gradient:
-    """Linear colour gradients.
+    """Linear colour gradients, and quadratic ones where such colours were optimised.
 
     Source: Lawonn & Guenther, Stylized Image Triangulation (2018), Sec. 5, Fig. 6c.
+    Deviation: the paper has no quadratic colours.
     """
 
     degree: ClassVar[int] = 1

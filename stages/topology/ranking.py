@@ -1,0 +1,102 @@
+"""Candidates for changes of topology, best first; what cannot be worth it is not measured."""
+
+import numpy as np
+
+from stages.appraise import Appraiser
+from stages.edits import collapsible, flippable
+from stages.mesh import Mesh
+
+LEAST_GAIN = 1.0
+"""Changes that save less than this are rounding [code value^2 px]."""
+EXAMINED = 8
+"""Candidates measured for each one wanted: some are illegal or touch each other."""
+
+
+def ranked_flips(mesh: Mesh, appraiser: Appraiser, least_share: float) -> np.ndarray:
+    """Edges of the measured mesh whose flip pays.
+
+    Args:
+        mesh: The measured mesh.
+        appraiser: Has measured it.
+        least_share: Smallest gain, as a part of the energy of the edge's two triangles.
+    """
+    energies = appraiser.energies(mesh)
+    edges = mesh.edge_half_edges
+    gains = appraiser.flip_gains(edges)
+    before = energies[edges // 3] + energies[np.maximum(mesh.twins[edges], 0) // 3]
+    wanted = gains > np.maximum(least_share * before, LEAST_GAIN)
+    edges, gains = edges[wanted], gains[wanted]
+    edges = edges[np.argsort(-gains, kind="stable")]
+    return edges[flippable(mesh, edges)]
+
+
+def ranked_splits(
+    mesh: Mesh, appraiser: Appraiser, most: int
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Edges of the measured mesh, what a split of each saves per new triangle, and its place.
+
+    The best come first.
+
+    A split cannot save more than the energy of the triangles beside it, so only the edges with
+    the largest energies beside them are measured.
+
+    Args:
+        mesh: The measured mesh.
+        appraiser: Has measured it.
+        most: Number of edges worth knowing.
+    """
+    energies = appraiser.energies(mesh)
+    edges = mesh.edge_half_edges
+    twins = mesh.twins[edges]
+    added = np.where(twins >= 0, 2, 1)
+    beside = energies[edges // 3] + np.where(twins >= 0, energies[twins // 3], 0.0)
+    likely = np.argsort(-beside / added, kind="stable")[: EXAMINED * most]
+    edges = edges[likely]
+    gains, points = appraiser.split_gains(edges)
+    gains = gains / added[likely]
+    order = np.argsort(-gains, kind="stable")
+    return edges[order], gains[order], points[order]
+
+
+def ranked_collapses(mesh: Mesh, appraiser: Appraiser, most: int) -> tuple[np.ndarray, np.ndarray]:
+    """Half-edges of the measured mesh and what each collapse costs per lost triangle, best first.
+
+    If all triangles around a vertex took one colour, the energy would grow by the spread of their
+    colours; no collapse of the vertex costs more. Only the vertices with the smallest spread are
+    measured.
+
+    Args:
+        mesh: The measured mesh.
+        appraiser: Has measured it.
+        most: Number of vertices that may go.
+    """
+    spread = np.where(mesh.on_left_right & mesh.on_top_bottom, np.inf, _spread(mesh, appraiser))
+    likely = np.argsort(spread, kind="stable")[: EXAMINED * most]
+    chosen = np.zeros(mesh.vertex_count, dtype=bool)
+    chosen[likely] = True
+    origins = mesh.triangles.reshape(-1)
+    on_border = (mesh.on_left_right | mesh.on_top_bottom)[origins]
+    half_edges = np.flatnonzero(chosen[origins] & (~on_border | (mesh.twins < 0)))
+    lost = np.where(mesh.twins[half_edges] >= 0, 2, 1)
+    costs = appraiser.collapse_costs(half_edges) / lost
+    order = np.argsort(costs, kind="stable")[: EXAMINED * most]
+    half_edges, costs = half_edges[order], costs[order]
+    legal = collapsible(mesh, half_edges)
+    return half_edges[legal], costs[legal]
+
+
+def _spread(mesh: Mesh, appraiser: Appraiser) -> np.ndarray:
+    """Spread of the mean colours around each vertex, weighted by pixels [code value^2 px], [V]."""
+    corners = mesh.triangles.reshape(-1)
+    weights = np.repeat(appraiser.counts.astype(np.float64), 3)
+    colors = np.repeat(appraiser.colors, 3, axis=0)
+
+    def around(values: np.ndarray) -> np.ndarray:
+        """Sum over the corners at every vertex."""
+        return np.bincount(corners, weights=values, minlength=mesh.vertex_count)
+
+    total = np.maximum(around(weights), 1.0)
+    spread = around(weights * (colors**2).sum(axis=1))
+    for channel in range(colors.shape[1]):
+        spread -= around(weights * colors[:, channel]) ** 2 / total
+    return 0.5 * spread
