@@ -16,9 +16,11 @@ from pipeline.drawing import Drawing, check_drawing
 from pipeline.job import Job
 from pipeline.past import Past, open_track, past_of
 from pipeline.progress import Progress
+from pipeline.rows_around import rows_around
 from pipeline.shots import with_shots
 from pipeline.steps import Step, check_cuts, open_around, steps
 from pipeline.stream import Behind, ahead
+from pipeline.take import Take
 from pipeline.track import FrameRow, TrackReader, TrackWriter
 from stages.advect import advect
 from stages.frame import Frame
@@ -115,13 +117,16 @@ def render(job: Job, track: TrackReader, info: MediaInfo, progress: Progress) ->
     begun = perf_counter()
     check_drawing(job, info)
     device = Device(job.device, job.threads)
-    rows = track.rows_in(job.frame_range)
-    tally = _Tally(progress, len(rows))
+    shown = track.rows_in(job.frame_range)
+    rows = rows_around(track.rows, shown, job)
+    tally = _Tally(progress, len(shown))
     drawing = Drawing(job, info, device)
     with drawing, Behind(drawing.draw, SOLVED_BEHIND) as writer:
         for snapshot, row in zip(_fitted(track, rows, job, device), rows, strict=True):
-            writer.put(snapshot)
-            tally.add(row.triangle_count, snapshot.rmse)
+            is_shown = shown[0].frame <= row.frame <= shown[-1].frame
+            writer.put(Take(snapshot, row.shot, is_shown))
+            if is_shown:
+                tally.add(row.triangle_count, snapshot.rmse)
     return tally.result(begun, (), drawing.notes)
 
 
@@ -221,10 +226,10 @@ def _fitted(
     if job.fitted == track.header.model:
         yield from track.snapshots(rows)
         return
-    weights = open_weights(job.weights, (info.width, info.height), job.frame_range)
+    around = FrameRange(rows[0].frame, rows[-1].frame, track.header.frame_range.step)
+    weights = open_weights(job.weights, (info.width, info.height), around)
     triangulator = _triangulator(job, info, device)
     wanted = {row.frame for row in rows}
-    around = FrameRange(rows[0].frame, rows[-1].frame, track.header.frame_range.step)
     with open_decoder(job.source, around) as decoder:
         frames = (frame for frame in decoder if frame.index in wanted)
         for frame in weights.beside(frames):
@@ -278,4 +283,4 @@ class _Writer:
         if self._track is not None and not solved.is_stored:
             self._track.write(solved.snapshot, solved.shot)
         if self._drawing is not None:
-            self._drawing.draw(solved.snapshot)
+            self._drawing.draw(Take(solved.snapshot, solved.shot))

@@ -1,11 +1,14 @@
 """Snapshots to frames of the output: drawn and encoded."""
 
+from contextlib import ExitStack
 from types import TracebackType
 
 from pipeline.job import Job
+from pipeline.smooth import Smoother
+from pipeline.take import Take
+from stages.fading import Fading
 from stages.media import MediaInfo, check_output, open_encoder
 from stages.render import Renderer
-from stages.snapshot import Snapshot
 from warp_kernels.device import Device
 
 
@@ -27,16 +30,33 @@ class Drawing:
         size = job.size_for(picture)
         self._renderer = Renderer(device, picture, size, job.shown_styles)
         self._encoder = open_encoder(job.output, info, size, job.encode, job.frame_range)
+        # Where every frame starts anew, triangles of the same number have nothing in common.
+        self._blend = 0 if job.independent else job.blend
+        self._smoother = Smoother(0.0 if job.independent else job.smooth)
+        self._fading: Fading | None = None
+        self._shot: int | None = None
 
     @property
     def notes(self) -> list[str]:
         """Choices that were made, one sentence each; complete after the block."""
         return self._encoder.notes
 
-    def draw(self, snapshot: Snapshot) -> None:
-        """Draw and encode a snapshot."""
-        pixels = self._renderer.render(snapshot)
-        self._encoder.write(pixels, snapshot.pts, snapshot.time_base, snapshot.frame_index)
+    def draw(self, take: Take) -> None:
+        """Draw and encode a frame, or an earlier one that has been waiting for it."""
+        for smooth in self._smoother.add(take):
+            self._draw(smooth)
+
+    def _draw(self, take: Take) -> None:
+        if self._blend:
+            if self._fading is None or take.shot != self._shot:
+                self._fading = Fading.begin(take.snapshot, self._blend)
+            else:
+                self._fading = self._fading.followed_by(take.snapshot)
+            self._shot = take.shot
+        if take.is_shown:
+            snapshot = take.snapshot
+            pixels = self._renderer.render(snapshot, self._fading)
+            self._encoder.write(pixels, snapshot.pts, snapshot.time_base, snapshot.frame_index)
 
     def __enter__(self) -> "Drawing":
         self._encoder.__enter__()
@@ -48,7 +68,13 @@ class Drawing:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        self._encoder.__exit__(kind, error, trace)
+        if error is not None:
+            self._encoder.__exit__(kind, error, trace)
+            return
+        with ExitStack() as closing:
+            closing.push(self._encoder)  # a failure of the last frames leaves nothing either
+            for take in self._smoother.rest():
+                self._draw(take)
 
 
 def check_drawing(job: Job, info: MediaInfo) -> None:

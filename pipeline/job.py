@@ -28,6 +28,10 @@ from warp_kernels.styles import Flat, Gradient, Style
 
 MAX_THREADS = 1024
 """More than any machine has cores; beyond it a number is a mistake."""
+MAX_BLEND = 250
+"""Frames; ten seconds. What fades must be kept in memory."""
+MAX_SMOOTH = 50
+"""Frames; three times as many on either side are kept in memory."""
 
 _DEVICE = re.compile(r"auto|cpu|cuda(:\d+)?")
 
@@ -111,6 +115,22 @@ class Job:
         metadata={"help": "size of the output relative to the source", "group": "look"},
     )
     """Size of the output relative to the source, or None."""
+    blend: int = field(
+        default=0,
+        metadata={
+            "help": "frames over which triangles fade in where they replace others, 0 for at once",
+            "group": "look",
+        },
+    )
+    """Most frames over which new triangles fade in."""
+    smooth: float = field(
+        default=0.0,
+        metadata={
+            "help": "smooth paths and colours over time: standard deviation in frames, 0 for not",
+            "group": "look",
+        },
+    )
+    """Standard deviation of the smoothing over time [frames]."""
     encode: EncodeOptions = field(default_factory=EncodeOptions)
     """How the output is written."""
     cuts: str = field(
@@ -170,6 +190,12 @@ class Job:
             )
         if self.seed < 0:
             raise OptionError(f"--seed {self.seed}: must be 0 or more")
+        if not 0 <= self.blend <= MAX_BLEND:
+            raise OptionError(f"--blend {self.blend}: must lie between 0 (off) and {MAX_BLEND}")
+        if not 0 <= self.smooth <= MAX_SMOOTH:
+            raise OptionError(
+                f"--smooth {self.smooth:g}: must lie between 0 (off) and {MAX_SMOOTH}"
+            )
         if not 1 <= self.jobs <= MAX_THREADS:
             raise OptionError(f"--jobs {self.jobs}: must lie between 1 and {MAX_THREADS}")
 

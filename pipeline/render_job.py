@@ -40,6 +40,7 @@ def render_job(look: Job, track: TrackReader, source: Path | None) -> RenderJob:
     job = replace(header.job, output=look.output, encode=look.encode, styles=look.styles)
     job = replace(job, output_size=None, scale=None, track=None, resume=False, jobs=1)
     job = replace(job, output_size=look.output_size, scale=look.scale)
+    job = replace(job, blend=look.blend, smooth=look.smooth)
     job = replace(job, device=look.device, threads=look.threads)
     job = replace(job, frame_range=_range(look.frame_range, track))
     found, problem = _find(source, track, is_needed=job.fitted != header.model)

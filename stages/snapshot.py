@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from fractions import Fraction
+from math import comb
 
 import numpy as np
 
@@ -74,3 +75,25 @@ def colors_at(model: ColorModel, coefficients: np.ndarray, points: np.ndarray) -
         return coefficients[:, :, 0]
     terms = np.prod(points[:, None, :] ** np.array(model.exponents), axis=2)
     return np.einsum("tck,tk->tc", coefficients, terms)
+
+
+def with_origins(model: ColorModel, coefficients: np.ndarray, origins: np.ndarray) -> np.ndarray:
+    """Coefficients of the same colour polynomials in positions that count from other origins.
+
+    Args:
+        model: Fixes the terms.
+        coefficients: Of x^a y^b, [T, 3, K].
+        origins: For each triangle where x and y shall be zero [px], [T, 2].
+
+    Returns:
+        Coefficients of (x - x0)^a (y - y0)^b, [T, 3, K].
+    """
+    if model.degree == 0:
+        return coefficients
+    x, y = origins.T
+    matrix = np.zeros((len(origins), model.term_count, model.term_count))
+    for old, (a, b) in enumerate(model.exponents):
+        for new, (i, j) in enumerate(model.exponents):
+            if i <= a and j <= b:
+                matrix[:, new, old] = comb(a, i) * comb(b, j) * x ** (a - i) * y ** (b - j)
+    return np.einsum("tnk,tck->tcn", matrix, coefficients)

@@ -8,6 +8,7 @@ import warp as wp
 from warp_kernels.device import Device, Phase
 from warp_kernels.edge_coverage import BAND, record_edge_coverage
 from warp_kernels.gbuffer import record_gbuffer
+from warp_kernels.layers import Affine, Layers, LayerTables
 from warp_kernels.raster import MAX_SIDE
 from warp_kernels.scene import Scene, StyleParameters
 from warp_kernels.shade import record_shade
@@ -59,7 +60,7 @@ class Canvas:
             row[: len(style.parameters())] = style.parameters()
         self._parameters = device.empty(len(packed), StyleParameters)
         device.write(self._parameters, packed)
-        self._allocate(vertices=512, triangles=1024)
+        self._allocate(vertices=512, triangles=1024, layers=1024, links=1)
 
     def draw(
         self,
@@ -71,6 +72,7 @@ class Canvas:
         gradients: np.ndarray,
         curvatures: np.ndarray | None,
         centres: np.ndarray,
+        layers: Layers | None = None,
     ) -> np.ndarray:
         """Draw a mesh.
 
@@ -78,19 +80,24 @@ class Canvas:
             vertices: Positions [px of the picture], [V, 2].
             triangles: Corners, [T, 3].
             edges: Ends, [E, 2].
-            colors: Mean colours [code values], [T, 3].
-            gradients: Change of colour to the right and down [code values / px], [T, 2, 3].
-            curvatures: What quadratic colours add, see `Scene`, [T, 4, 3]; None for others.
-            centres: Centroids of the triangles [px of the picture], [T, 2].
+            colors: Mean colours of the triangles, then of the vanished ones that show through
+                [code values], [M, 3].
+            gradients: Change of colour to the right and down [code values / px], [M, 2, 3].
+            curvatures: What quadratic colours add, see `Scene`, [M, 4, 3]; None for others.
+            centres: Centroids [px of the picture], [M, 2].
+            layers: What fading triangles let through; None where none fades, M is T then.
 
         Returns:
             Code values, [rows, columns, 3] uint8; a copy of its own.
         """
-        if len(vertices) > self._capacity[0] or len(triangles) > self._capacity[1]:
-            self._allocate(
-                vertices=max(self._capacity[0], len(vertices) * 3 // 2),
-                triangles=max(self._capacity[1], len(triangles) * 3 // 2),
-            )
+        self._reserve(
+            vertices=len(vertices),
+            triangles=len(triangles),
+            layers=len(colors),
+            links=1 if layers is None else len(layers.links),
+        )
+        if layers is not None:
+            self._write_layers(layers)
         for array, values in (
             (self._vertices, vertices),
             (self._triangles, triangles),
@@ -109,27 +116,79 @@ class Canvas:
             self.device.clear(self._coverage)
             self._edge_drawing.resize(-(-self.output[1] // BAND), per_element=len(edges))
             phases.append(self._edge_drawing)
-        for top, filling, shading in self._bands:
+        for top, filling, shading in self._bands(fades=layers is not None):
             filling.resize(len(triangles))
             shading.resize(min(self._band, self.output[1] - top))
             phases += [filling, shading]
         self.device.run(phases)
         return self.device.read(self._pixels, self.output[1])
 
-    def _allocate(self, *, vertices: int, triangles: int) -> None:
-        self._capacity = (vertices, triangles)
+    def _write_layers(self, layers: Layers) -> None:
+        """Hand over what shows through."""
+        for name in ("weights", "maps", "spans", "links", "lines"):
+            self.device.write(getattr(self._layers, name), getattr(layers, name))
+
+    def _reserve(self, **counts: int) -> None:
+        """Make room for so many of each kind, and some more."""
+        if any(count > self._capacity[kind] for kind, count in counts.items()):
+            grown = {
+                kind: kept if counts[kind] <= kept else counts[kind] * 3 // 2
+                for kind, kept in self._capacity.items()
+            }
+            self._allocate(**grown)
+
+    def _allocate(self, *, vertices: int, triangles: int, layers: int, links: int) -> None:
+        self._capacity = {
+            "vertices": vertices,
+            "triangles": triangles,
+            "layers": layers,
+            "links": links,
+        }
         self._vertices = self._empty(vertices, wp.vec2d)
         self._triangles = self._empty(triangles, wp.vec3i)
         self._edges = self._empty(vertices + triangles + 1, wp.vec2i)
-        self._colors = self._empty(triangles, wp.vec3f)
-        self._gradients = self._empty((triangles, 2), wp.vec3f)
-        self._curvatures = self._empty((triangles, 4), wp.vec3f)
-        self._centres = self._empty(triangles, wp.vec2f)
-        self._record()
+        self._colors = self._empty(layers, wp.vec3f)
+        self._gradients = self._empty((layers, 2), wp.vec3f)
+        self._curvatures = self._empty((layers, 4), wp.vec3f)
+        self._centres = self._empty(layers, wp.vec2f)
+        tables = LayerTables()
+        tables.weights = self._empty(layers, float)
+        tables.maps = self._empty(layers, Affine)
+        tables.spans = self._empty(layers, wp.vec2i)
+        tables.links = self._empty(links, int)
+        tables.lines = self._empty(layers, wp.mat33f)
+        self._layers = tables
+        self._recorded: dict[bool, list[tuple[int, Phase, Phase]]] = {}
+        self._edge_drawing = record_edge_coverage(
+            self.device,
+            vertices=self._vertices,
+            edges=self._edges,
+            edge_count=self._edge_count,
+            scale=self._scale,
+            half_width=0.5 * self._line_width * self._scale[1],
+            coverage_out=self._coverage,
+        )
 
-    def _record(self) -> None:
-        """Record every launch anew: the arrays have moved."""
-        scale = (self.output[0] / self.picture[0], self.output[1] / self.picture[1])
+    @property
+    def _scale(self) -> tuple[float, float]:
+        """Output pixels per pixel of the picture, across and down."""
+        return self.output[0] / self.picture[0], self.output[1] / self.picture[1]
+
+    def _bands(self, *, fades: bool) -> list[tuple[int, Phase, Phase]]:
+        """The launches of every band; recorded anew once the arrays have moved.
+
+        Most frames of a calm clip need no look through triangles, and stills never do: their
+        kernel is not even compiled.
+        """
+        if fades not in self._recorded:
+            tops = range(0, self.output[1], self._band)
+            bands = [(top, *self._record_band(top, fades=fades)) for top in tops]
+            self._recorded[fades] = bands
+        return self._recorded[fades]
+
+    def _record_band(self, top: int, *, fades: bool) -> tuple[Phase, Phase]:
+        """Record what fills and what shades the band that begins with output row `top`."""
+        scale = self._scale
         scene = Scene()
         scene.colors = self._colors
         scene.gradients = self._gradients
@@ -137,20 +196,6 @@ class Canvas:
         scene.curved = self._curved
         scene.centres = self._centres
         scene.edge_coverage = self._coverage
-        self._edge_drawing = record_edge_coverage(
-            self.device,
-            vertices=self._vertices,
-            edges=self._edges,
-            edge_count=self._edge_count,
-            scale=scale,
-            half_width=0.5 * self._line_width * scale[1],
-            coverage_out=self._coverage,
-        )
-        tops = range(0, self.output[1], self._band)
-        self._bands = [(top, *self._record_band(top, scale, scene)) for top in tops]
-
-    def _record_band(self, top: int, scale: tuple[float, float], scene: Any) -> tuple[Phase, Phase]:
-        """Record what fills and what shades the band that begins with output row `top`."""
         filling = record_gbuffer(
             self.device,
             vertices=self._vertices,
@@ -165,6 +210,8 @@ class Canvas:
             samples=self.samples,
             scene=scene,
             parameters=self._parameters,
+            layers=self._layers,
+            fades=fades,
             triangle_of=self._triangle_of,
             picture_per_sample=(1 / (scale[0] * self.samples), 1 / (scale[1] * self.samples)),
             top=top,

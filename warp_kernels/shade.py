@@ -1,7 +1,7 @@
 """One generic shader: a stack of styles, bottom to top, blended for every output pixel.
 
-A pixel whose samples all lie in one triangle is shaded once, at its centre; a pixel on a border
-is shaded at every sample and averaged.
+A pixel whose samples all lie in one triangle is shaded once, at its centre; a pixel on a border,
+or on one that is seen through a triangle that fades in, is shaded at every sample and averaged.
 """
 
 from functools import cache
@@ -10,6 +10,7 @@ from typing import Any
 import warp as wp
 
 from warp_kernels.device import Device, Phase
+from warp_kernels.layers import LayerTables, fading_look, opaque_look
 from warp_kernels.scene import Sample, Scene, StyleParameters
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
@@ -44,6 +45,26 @@ def _stack(shaders: tuple[Any, ...]) -> Any:
 
 
 @wp.func
+def is_whole(line: wp.array(dtype=int), first: int, width: int, last: int) -> bool:
+    """Whether one triangle holds all samples of a pixel.
+
+    One that holds the four outermost samples holds those between: it is convex.
+
+    Args:
+        line: Triangles of the samples of a row of pixels.
+        first: Place of the pixel's first sample.
+        width: Samples in a row.
+        last: Samples of a pixel, across and down each, less one.
+    """
+    triangle = line[first]
+    below = first + last * width
+    differing = triangle ^ line[first + last]
+    differing = differing | (triangle ^ line[below])
+    differing = differing | (triangle ^ line[below + last])
+    return differing == 0
+
+
+@wp.func
 def to_code_values(color: wp.vec3f) -> wp.vec3ub:
     """Round a colour to code values."""
     return wp.vec3ub(
@@ -54,8 +75,9 @@ def to_code_values(color: wp.vec3f) -> wp.vec3ub:
 
 
 @cache
-def _shade_kernel(shaders: tuple[Any, ...], samples: int) -> Any:
+def _shade_kernel(shaders: tuple[Any, ...], samples: int, fades: bool) -> Any:
     color_at = _stack(shaders)
+    look = fading_look(color_at) if fades else opaque_look(color_at)
 
     @wp.kernel(enable_backward=False, module="unique")
     def shade(
@@ -63,6 +85,7 @@ def _shade_kernel(shaders: tuple[Any, ...], samples: int) -> Any:
         # In:
         scene: Scene,
         parameters: wp.array(dtype=StyleParameters),
+        layers: LayerTables,
         triangle_of: wp.array2d(dtype=int),
         picture_per_sample: wp.vec2f,
         top: int,
@@ -85,34 +108,31 @@ def _shade_kernel(shaders: tuple[Any, ...], samples: int) -> Any:
         )
         here = Sample()
         here.row = row
+        # as far as a pixel's corner is from its centre, also where a map stretches by a quarter
+        near = wp.length(picture_per_sample) * wp.static(0.625 * samples)
         column = int(0)
         while column < canvas_out.shape[1]:
             first = column * wp.static(samples)
             here.column = column
             here.triangle = line[first]
-            # a triangle that holds the four outermost samples holds those between: it is convex
-            right = first + wp.static(samples - 1)
-            below = wp.static(samples - 1) * width
-            differing = here.triangle ^ line[right]
-            differing = differing | (here.triangle ^ line[below + first])
-            differing = differing | (here.triangle ^ line[below + right])
             color = wp.vec3f()
-            if differing == 0:
+            clear = float(0.0)
+            if is_whole(line, first, width, wp.static(samples - 1)):
                 centre = wp.static(0.5 * samples)
-                here.position = wp.vec2f(
-                    (float(first) + centre) * picture_per_sample[0],
-                    (float(first_row) + centre) * picture_per_sample[1],
-                )
-                color = color_at(scene, parameters, here)
-            else:
+                at = wp.vec2f(float(first) + centre, float(first_row) + centre)
+                here.position = wp.cw_mul(at, picture_per_sample)
+                seen = look(scene, parameters, layers, here)
+                color = wp.vec3f(seen[0], seen[1], seen[2])
+                clear = seen[3]
+            if clear < near:
+                color = wp.vec3f()
                 for i in range(wp.static(samples)):
                     for j in range(wp.static(samples)):
                         here.triangle = line[i * width + first + j]
-                        here.position = wp.vec2f(
-                            (float(first + j) + 0.5) * picture_per_sample[0],
-                            (float(first_row + i) + 0.5) * picture_per_sample[1],
-                        )
-                        color += color_at(scene, parameters, here)
+                        at = wp.vec2f(float(first + j) + 0.5, float(first_row + i) + 0.5)
+                        here.position = wp.cw_mul(at, picture_per_sample)
+                        seen = look(scene, parameters, layers, here)
+                        color += wp.vec3f(seen[0], seen[1], seen[2])
                 color = color * wp.static(1.0 / (samples * samples))
             canvas_out[row, column] = to_code_values(color)
             column += 1
@@ -127,6 +147,8 @@ def record_shade(
     samples: int,
     scene: Any,
     parameters: wp.array,
+    layers: Any,
+    fades: bool,
     triangle_of: wp.array,
     picture_per_sample: tuple[float, float],
     top: int,
@@ -141,10 +163,12 @@ def record_shade(
         samples: Samples per output pixel, across and down each.
         scene: What shaders look at, a `Scene`.
         parameters: One `StyleParameters` per shader.
+        layers: What fading triangles let through, `LayerTables`.
+        fades: Whether any triangle fades; else `layers` is not looked at.
         triangle_of: Triangle of every sample of a band, see `gbuffer`.
         picture_per_sample: Size of a sample in the source picture [px], across and down.
         top: The output row with which the band begins.
         canvas_out: Code values, [rows, columns] vec3ub.
     """
-    inputs = [scene, parameters, triangle_of, wp.vec2f(*picture_per_sample), top]
-    return device.record(_shade_kernel(shaders, samples), inputs, [canvas_out])
+    inputs = [scene, parameters, layers, triangle_of, wp.vec2f(*picture_per_sample), top]
+    return device.record(_shade_kernel(shaders, samples, fades), inputs, [canvas_out])

@@ -1,0 +1,17 @@
+"""A frame on its way from the solution to the output."""
+
+from dataclasses import dataclass
+
+from stages.snapshot import Snapshot
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Take:
+    """What is drawn."""
+
+    snapshot: Snapshot
+    """The frame's triangles and colours."""
+    shot: int
+    """Number of the frame with which its shot begins."""
+    is_shown: bool = True
+    """Whether it is part of the output, or only there for those around it."""
