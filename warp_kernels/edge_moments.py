@@ -23,8 +23,9 @@ wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 EDGE_OPTIONS = {
     "enable_backward": False,
     "fuse_fp": False,
-    "cpu_compiler_flags": "-march=native -mprefer-vector-width=512 -fno-vectorize -mllvm=-inline-threshold=9000"
-    " -mllvm=-inline-cold-callsite-threshold=3000 -mllvm=-slp-recursion-max-depth=12",
+    "cpu_compiler_flags": "-march=native -mprefer-vector-width=512 -fno-vectorize"
+    " -mllvm=-inline-threshold=9000 -mllvm=-inline-cold-callsite-threshold=3000"
+    " -mllvm=-slp-recursion-max-depth=12",
 }
 """LLVM is to put several versions of an edge into one register, not several rows of one version,
 which it would have to gather from all over the table; for that it must look deeper than Warp lets
