@@ -2,9 +2,8 @@
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from stages.appraise import Appraiser
+from stages.convergence import Convergence
 from stages.divide import divide_large
 from stages.mesh import Mesh
 from stages.optimize import OptimizeOptions, load_mesh, optimize
@@ -19,9 +18,7 @@ GROWING_SHARE = 0.6
 REFINING_SHARE = 0.85
 """Part of the iterations during which the topology changes (the paper: 400 of 600)."""
 ROUND = 8
-"""Iterations between two looks at the topology, and at what the last ones have brought."""
-CONVERGED = 2e-4
-"""A round that saves less than this part of the energy is the last one of its kind."""
+"""Iterations between two looks at the topology, and at whether the energy has converged."""
 CATCHING_UP = 8
 """More looks at the topology, if there are still too many triangles."""
 SPARE = 0.8
@@ -62,21 +59,20 @@ class Approximator:
             goal: What the result must be like.
         """
         mesh = self._settle(self._refine(mesh, goal))
-        return self._within_limits(mesh, goal)
+        return self.within_limits(mesh, goal)
 
     def _refine(self, mesh: Mesh, goal: Goal) -> Mesh:
         """Alternate optimisation and changes of topology until the wanted number is reached."""
         growth = self.growth(goal)
         rounds = max(1, int(self.iterations * REFINING_SHARE) // ROUND)
-        before = np.inf
+        convergence = Convergence()
         for number in range(1, rounds + 1):
             load_mesh(self.workspace, mesh)
             mesh = optimize(self.workspace, mesh, ROUND, self.options)
             progress = number / rounds
-            energy = self.appraiser.energies(mesh).sum()
-            if progress > growth.settled and energy > (1 - CONVERGED) * before:
+            # on the way the energy falls and rises with the number of triangles
+            if progress > growth.settled and convergence.is_reached(self.workspace.last_energy()):
                 break
-            before = energy
             target = goal.tightened(growth.count(progress, goal.count), SPARE)
             mesh = self.topology.adapt(mesh, self.appraiser, target)
         for _ in range(CATCHING_UP):  # where the rounds were too few for the way down
@@ -93,7 +89,7 @@ class Approximator:
         """
         left = self.iterations - int(self.iterations * REFINING_SHARE) // ROUND * ROUND
         load_mesh(self.workspace, mesh)
-        before = np.inf
+        convergence = Convergence()
         for begin in range(0, left, ROUND):
             mesh = optimize(
                 self.workspace,
@@ -103,20 +99,23 @@ class Approximator:
                 trust_region=self.options.trust_region * LAST_TRUST ** (begin / left),
                 displacement=LAST_DISPLACEMENT,
             )
-            energy = self.workspace.last_energy()
-            if energy > (1 - CONVERGED) * before:
+            if convergence.is_reached(self.workspace.last_energy()):
                 break
-            before = energy
         return mesh
 
-    def _within_limits(self, mesh: Mesh, goal: Goal) -> Mesh:
-        """Divide what has grown beyond the largest area while vertices settled."""
+    def within_limits(self, mesh: Mesh, goal: Goal) -> Mesh:
+        """Divide what has grown beyond the largest area while vertices moved.
+
+        Args:
+            mesh: The mesh in the workspace; so is the result.
+            goal: What it must be like.
+        """
         for _ in range(CATCHING_UP):
             divided = divide_large(mesh, goal.largest_area)
             if divided is mesh:
                 break
             mesh = divided
             if mesh.triangle_count > goal.count + 1:
-                mesh = self.topology.adapt(mesh, self.appraiser, goal.tightened(goal.count, SPARE))
+                mesh = self.topology.adapt(mesh, self.appraiser, goal)
             load_mesh(self.workspace, mesh)
         return mesh

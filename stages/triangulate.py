@@ -179,7 +179,7 @@ class Triangulator:
         goal = self._goal(self._followed_count(mesh), calm=True)
         mesh = self._approximator.topology.adapt(mesh, self._appraiser, goal)
         mesh = self._follow(mesh, seed, options.frame_iterations - options.frame_iterations // 2)
-        return self._snapshot(frame, mesh)
+        return self._snapshot(frame, self._approximator.within_limits(mesh, goal))
 
     def fit(self, frame: Frame, mesh: Mesh) -> Snapshot:
         """Fit the colours alone, to a mesh that stays as it is.
@@ -188,8 +188,9 @@ class Triangulator:
             frame: The frame.
             mesh: What it became before.
         """
-        self._load(frame)
-        load_mesh(self._workspace, mesh)
+        if self._fitting is self._workspace:
+            self._load(frame)
+            load_mesh(self._workspace, mesh)
         return self._snapshot(frame, mesh)
 
     def _followed_count(self, mesh: Mesh) -> int:

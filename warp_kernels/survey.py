@@ -4,12 +4,8 @@ import numpy as np
 import warp as wp
 
 from warp_kernels.device import Phase
-from warp_kernels.topology_gains import (
-    SurveyArrays,
-    record_collapse_costs,
-    record_flip_gains,
-    record_split_gains,
-)
+from warp_kernels.ground import ground_type
+from warp_kernels.topology_gains import record_changes
 from warp_kernels.workspace import Workspace
 
 
@@ -85,25 +81,19 @@ class Survey:
 
     def _record(self, change: str) -> Phase:
         workspace = self._workspace
-        arrays = SurveyArrays(
-            half_edges=self._half_edges,
-            twins=self._twins,
-            corners=self._corners,
-            vertices=workspace.standing,
-            energies=workspace.fit_energies,
-            sides=workspace.sides,
-            color_sums=workspace.fit_color_sums,
-            area_sums=workspace.fit_area_sums,
-            table=workspace.table,
-            powers=workspace.powers,
-            limits=self._limits,
-            gauge=workspace.gauge,
-            changes_out=self._changes,
-            points_out=self._points,
-        )
-        device, layout, height = workspace.device, workspace.layout, workspace.size[1]
-        if change == "flip":
-            return record_flip_gains(device, layout, arrays, height=height)
-        if change == "split":
-            return record_split_gains(device, layout, arrays, height=height)
-        return record_collapse_costs(device, layout, arrays, height=height)
+        ground = ground_type(workspace.layout)()
+        ground.half_edges = self._half_edges
+        ground.twins = self._twins
+        ground.corners = self._corners
+        ground.vertices = workspace.standing
+        ground.energies = workspace.fit_energies
+        ground.sides = workspace.sides
+        ground.color_sums = workspace.fit_color_sums
+        ground.area_sums = workspace.fit_area_sums
+        ground.table = workspace.table
+        ground.powers = workspace.powers
+        ground.gauge = workspace.gauge
+        ground.limits = self._limits
+        ground.height = workspace.size[1]
+        outputs = [self._changes, self._points] if change == "split" else [self._changes]
+        return record_changes(workspace.device, workspace.layout, change, ground, outputs)

@@ -10,6 +10,7 @@ from typing import Any
 import warp as wp
 
 from warp_kernels.fit import fit_moments
+from warp_kernels.ground import ground_type
 from warp_kernels.image_tables import table_entry
 from warp_kernels.moment_layout import MomentLayout, moment_types
 from warp_kernels.moments import area_sums_left_of, color_sums_left_of
@@ -29,6 +30,7 @@ def line_sums(layout: MomentLayout) -> tuple[Any, Any, Any]:
         takes those of a triangle's three sides, each with the sign 1, or -1 where the line runs
         the other way.
     """
+    ground_struct = ground_type(layout)
     types = moment_types(layout)
     color_type, area_type, integer = types.color, types.area, types.integer
     color_sums = color_sums_left_of(layout)
@@ -45,25 +47,19 @@ def line_sums(layout: MomentLayout) -> tuple[Any, Any, Any]:
         area: area_type
 
     @wp.func
-    def along(
-        tail: wp.vec2d,
-        head: wp.vec2d,
-        table: wp.array(dtype=types.entry),
-        powers: wp.array(dtype=types.powers),
-        height: int,
-    ) -> Line:
+    def along(tail: wp.vec2d, head: wp.vec2d, ground: ground_struct) -> Line:
         """Walk down the rows that a line crosses."""
-        width = powers.shape[0] - 1
+        width = ground.powers.shape[0] - 1
         color = color_type()
         area = area_type()
-        walk = walk_edge(to_fixed(tail), to_fixed(head), height)
+        walk = walk_edge(to_fixed(tail), to_fixed(head), ground.height)
         row = walk.row_begin
         while row < walk.row_end:
             column = wp.clamp(column_of(walk.position), 0, width)
-            y = wp.int64(row - height / 2)
+            y = wp.int64(row - ground.height / 2)
             entry = table_entry(row, column, width, wp.static(depth))
-            color += color_sums(table, entry, y)
-            area += area_sums(table, entry, powers[column], y)
+            color += color_sums(ground.table, entry, y)
+            area += area_sums(ground.table, entry, ground.powers[column], y)
             walk.position += walk.step
             row += 1
         line = Line()
@@ -72,28 +68,29 @@ def line_sums(layout: MomentLayout) -> tuple[Any, Any, Any]:
         return line
 
     @wp.func
-    def known(
-        half_edge: int,
-        sides: wp.array(dtype=wp.vec3i),
-        color_sums: wp.array2d(dtype=color_type),
-        area_sums: wp.array2d(dtype=area_type),
-    ) -> Line:
+    def known(half_edge: int, ground: ground_struct) -> Line:
         """Read the sums of an edge of the mesh, seen from one of its half-edges."""
-        side = sides[half_edge / 3][half_edge % 3]
+        side = ground.sides[half_edge / 3][half_edge % 3]
         line = Line()
-        line.color = side_color(color_sums, side, 0)
-        line.area = side_area(area_sums, side, 0)
+        line.color = side_color(ground.color_sums, side, 0)
+        line.area = side_area(ground.area_sums, side, 0)
         return line
 
     @wp.func
     def energy(
-        ab: Line, ab_sign: int, bc: Line, bc_sign: int, ca: Line, ca_sign: int, gauge: wp.vec3d
+        ab: Line,
+        ab_sign: int,
+        bc: Line,
+        bc_sign: int,
+        ca: Line,
+        ca_sign: int,
+        ground: ground_struct,
     ) -> wp.float64:
         """Add the three sides, then solve."""
         color = integer(ab_sign) * ab.color + integer(bc_sign) * bc.color
         area = integer(ab_sign) * ab.area + integer(bc_sign) * bc.area
-        return fit(
-            color + integer(ca_sign) * ca.color, area + integer(ca_sign) * ca.area, gauge
-        ).energy
+        color += integer(ca_sign) * ca.color
+        area += integer(ca_sign) * ca.area
+        return fit(color, area, ground.gauge[0]).energy
 
     return along, known, energy
