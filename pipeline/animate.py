@@ -197,14 +197,19 @@ def _weighed(found: Iterable[Step], weights: EvenWeights | WeightMap) -> Iterato
 def _solve(
     found: Iterable[Step], triangulator: Triangulator, job: Job, past: Past | None
 ) -> Iterator[Solved]:
-    """Triangulate frame after frame, each from the mesh of the one before."""
+    """Triangulate frame after frame, each from the mesh of the one before.
+
+    A picture that comes again, as in what is drawn for every other frame, keeps its mesh.
+    """
     snapshot = None if past is None else past.snapshot
     for step in found:
-        if snapshot is None or step.motion is None:
+        if snapshot is None or step.passage is None:
             rng = np.random.default_rng([job.seed, step.frame.index])
             snapshot = triangulator.first(step.frame, job.layout, rng)
+        elif step.passage.is_still and job.weights is None:
+            snapshot = snapshot.again(step.frame)
         else:
-            snapshot = triangulator.next(step.frame, advect(snapshot.mesh, step.motion))
+            snapshot = triangulator.next(step.frame, advect(snapshot.mesh, step.passage))
         yield Solved(snapshot, step.shot)
 
 

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from pipeline.job import Job
 from pipeline.shots import AHEAD, ShotFrame, read_cuts
-from stages.flows import FlowField
+from stages.flows import Passage
 from stages.frame import Frame
 from stages.media import Decoder, FrameRange, MediaInfo, count_frames, open_decoder
 from warp_kernels.errors import MediaError
@@ -38,8 +38,8 @@ class Step:
 
     frame: Frame
     """The frame."""
-    motion: FlowField | None
-    """Motion from the frame before, or None where a mesh starts anew."""
+    passage: Passage | None
+    """What leads here from the frame before, or None where a mesh starts anew."""
     shot: int
     """Number of the frame with which its shot begins."""
 
@@ -89,10 +89,11 @@ def steps(
                 notes.append(_restart(frame.index))
             if shot is None or shot_frame.opens_shot or not joined:
                 shot = frame.index
-            motion: FlowField | None = None
+            passage: Passage | None = None
             if before is not None and shot != frame.index and not job.independent:
                 motion = job.flow.estimate(before.pixels, frame.pixels)
-            yield Step(frame, motion, shot)
+                passage = Passage.along(motion, before.pixels, frame.pixels)
+            yield Step(frame, passage, shot)
             last = frame.index
         before = frame
 

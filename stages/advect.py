@@ -1,8 +1,11 @@
 """Carry a mesh from one frame to the next along the flow."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from stages.flows.field import FlowField
+from stages.cover import collapse_covered
+from stages.flows import Passage
 from stages.mesh import Mesh, heights_of
 
 LOWEST = 0.25
@@ -11,24 +14,38 @@ HALVINGS = 6
 """A vertex that still folds a triangle after this many halvings of its step stays behind."""
 
 
-def advect(mesh: Mesh, flow: FlowField) -> Mesh:
+@dataclass(frozen=True, eq=False)
+class Carried:
+    """A mesh that has come along from the frame before."""
+
+    mesh: Mesh
+    """The mesh, where the motion has taken it."""
+    trust: np.ndarray
+    """How far that is where each vertex belongs [0..1], shape [V]."""
+
+
+def advect(mesh: Mesh, passage: Passage) -> Carried:
     """Move every vertex by the motion of the picture under it.
 
-    Border vertices slide along their border, corners stay. Where a triangle would fold or
-    become too thin, the steps of its vertices are halved until it does not.
+    Border vertices slide along their border, corners stay. Triangles that would fold are covered
+    and collapse; where that cannot be, the steps of their vertices are halved until they do not
+    fold.
 
     Args:
         mesh: A valid mesh.
-        flow: Motion from the mesh's frame to the next.
+        passage: Leads from the mesh's frame to the next.
 
     Returns:
-        The same triangles, valid again; ids and rows are kept.
+        A valid mesh of the same triangles or fewer; ids are kept.
 
     Source: the paper starts a frame from the last one's mesh (Lawonn & Guenther, Stylized Image
         Triangulation, 2018, Sec. 6.3).
     Deviation: it does not move that mesh; the flow lets vertices follow fast motion.
     """
-    return mesh.moved(mesh.vertices + unfolded(mesh, sliding(mesh, flow.at(mesh.vertices))))
+    steps, trust = passage.follow(mesh.vertices)
+    kept, steps = collapse_covered(mesh, sliding(mesh, steps), LOWEST)
+    places = np.searchsorted(mesh.vertex_ids, kept.vertex_ids)  # ids ascend with the rows
+    return Carried(kept.moved(kept.vertices + unfolded(kept, steps)), trust[places])
 
 
 def sliding(mesh: Mesh, steps: np.ndarray) -> np.ndarray:

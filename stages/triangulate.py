@@ -4,8 +4,10 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from stages.advect import Carried
 from stages.appraise import Appraiser
 from stages.approximate import Approximator
+from stages.convergence import Convergence
 from stages.frame import Frame
 from stages.layouts import Layout
 from stages.mesh import Mesh
@@ -22,14 +24,19 @@ from warp_kernels.errors import OptionError
 from warp_kernels.solve import SUMS
 from warp_kernels.workspace import Workspace
 
-SPRING = 2000.0
-"""Strength of the temporal term [code value^2]: a vertex leaves the flow's path where the picture
-pulls harder than noise does."""
+SPRING = 8000.0
+"""Strength of the temporal term where the motion is certain [code value^2]: a vertex leaves the
+flow's path where the picture pulls harder than noise does."""
 FRAME_DISPLACEMENT = 0.5
 """Distance of the variants in later frames [px]: a wider one finds steadier places, and beyond this
 what the last iterations of the first frame have settled would move again."""
 DEAD_BAND = 0.1
 """Steps of later frames below this are not taken [px]: noise must not move what stands still."""
+FRAME_ROUND = 3
+"""Iterations of later frames between two looks at the topology."""
+FRAME_SAVING = 0.01
+"""Once a round saves less than this part of the energy, a later frame is done: where little has
+changed one or two rounds are enough, where something moves fast all of them are worth it."""
 CALM_QUALITY = 0.02
 """A later frame keeps its number of triangles while its rmse is this close to the wanted one."""
 MOST_DRIFT = 0.02
@@ -52,7 +59,7 @@ class TriangulateOptions:
         default=240, metadata={"help": "optimiser iterations for the first frame of a shot"}
     )
     frame_iterations: int = field(
-        default=8, metadata={"help": "optimiser iterations for each later frame"}
+        default=24, metadata={"help": "most optimiser iterations for each later frame"}
     )
     topology: str = field(
         default="energy",
@@ -166,19 +173,25 @@ class Triangulator:
         self._workspace.load_image(self._space.convert(frame.pixels), frame.weights)
         self._appraiser.forget()
 
-    def next(self, frame: Frame, seed: Mesh) -> Snapshot:
+    def next(self, frame: Frame, seed: Carried) -> Snapshot:
         """Triangulate a frame that continues a shot.
 
         Args:
             frame: The frame.
-            seed: The previous frame's mesh, carried along by the flow.
+            seed: The previous frame's mesh, carried along by the motion.
         """
-        options = self.options
         self._load(frame)
-        mesh = self._follow(seed, seed, options.frame_iterations // 2)
+        iterations = self.options.frame_iterations
+        rounds = max(1, iterations // FRAME_ROUND - 1)
+        each = iterations // (rounds + 1)
+        convergence = Convergence(FRAME_SAVING, patience=1)
+        mesh = self._follow(seed.mesh, seed, each)
         goal = self._goal(self._followed_count(mesh), calm=True)
-        mesh = self._approximator.topology.adapt(mesh, self._appraiser, goal)
-        mesh = self._follow(mesh, seed, options.frame_iterations - options.frame_iterations // 2)
+        for _ in range(rounds):
+            if each and convergence.is_reached(self._workspace.last_energy()):
+                break
+            mesh = self._approximator.topology.adapt(mesh, self._appraiser, goal)
+            mesh = self._follow(mesh, seed, each)
         return self._snapshot(frame, self._approximator.within_limits(mesh, goal))
 
     def fit(self, frame: Frame, mesh: Mesh) -> Snapshot:
@@ -204,14 +217,14 @@ class Triangulator:
         drift = min(max(missed ** (1 / FALL), 1 - MOST_DRIFT), 1 + MOST_DRIFT)
         return max(self._least, round(mesh.triangle_count * drift))
 
-    def _follow(self, mesh: Mesh, seed: Mesh, iterations: int) -> Mesh:
-        """Optimise, with every vertex on a spring to where the flow took it."""
+    def _follow(self, mesh: Mesh, seed: Carried, iterations: int) -> Mesh:
+        """Optimise, with every vertex on a spring to where the motion took it."""
         springs = np.zeros((mesh.vertex_count, 3))
         springs[:, :2] = mesh.vertices
-        old = np.searchsorted(seed.vertex_ids, mesh.vertex_ids)
-        known = mesh.vertex_ids < seed.next_vertex_id
-        springs[known, :2] = seed.vertices[old[known]]
-        springs[known, 2] = SPRING * self._space.scale
+        old = np.searchsorted(seed.mesh.vertex_ids, mesh.vertex_ids)
+        known = mesh.vertex_ids < seed.mesh.next_vertex_id
+        springs[known, :2] = seed.mesh.vertices[old[known]]
+        springs[known, 2] = SPRING * self._space.scale * seed.trust[old[known]]
         load_mesh(self._workspace, mesh, springs)
         return optimize(
             self._workspace,

@@ -187,7 +187,7 @@ def test_no_iteration_is_possible(device: str) -> None:
     wanted = options(iterations=0, frame_iterations=0)
     triangulator = Triangulator(Device(device), (WIDTH, HEIGHT), wanted)
     first = triangulator.first(frame_of(scene()), LAYOUTS["grid"](), np.random.default_rng(0))
-    assert_valid(triangulator.next(frame_of(scene(), 1), first.mesh).mesh)
+    assert_valid(triangulator.next(frame_of(scene(), 1), standing(first.mesh)).mesh)
 
 
 @pytest.mark.parametrize(
@@ -215,7 +215,7 @@ def test_still_clip_comes_to_rest(topology: str, device: str) -> None:
     rng = np.random.default_rng(1)
     snapshots = [triangulator.first(frame_of(scene()), LAYOUTS["importance"](), rng)]
     for number in range(1, 9):
-        snapshots.append(triangulator.next(frame_of(scene(), number), snapshots[-1].mesh))
+        snapshots.append(triangulator.next(frame_of(scene(), number), standing(snapshots[-1].mesh)))
         assert_valid(snapshots[-1].mesh)
     before, after = snapshots[-2].mesh, snapshots[-1].mesh
     kept, old, new = np.intersect1d(before.vertex_ids, after.vertex_ids, return_indices=True)

@@ -2,7 +2,7 @@
 
 A flow is a frozen dataclass of parameters with one method
 `estimate(previous [H, W, 3] uint8, current [H, W, 3] uint8) -> FlowField`; a new one is a file
-and a line here.
+and a line here. A `Passage` asks it for the motion of single points.
 """
 
 from typing import Protocol
@@ -12,6 +12,7 @@ import numpy as np
 from stages.flows.dis import Dis
 from stages.flows.field import FlowField
 from stages.flows.none import NoFlow
+from stages.flows.passage import Passage
 
 
 class Flow(Protocol):

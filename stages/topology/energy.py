@@ -44,6 +44,11 @@ class Energy:
     """A vertex moves elsewhere if its gain there exceeds its cost here this many times."""
     calm_flip: float = 0.05
     """In a followed picture a flip must save this part of its two triangles' energy."""
+    calm_flip_floor: float = 0.3
+    """And this part of the mean energy of a triangle: what saves less only flickers."""
+    calm_floor: float = 1.0
+    """In a followed picture a vertex moves elsewhere only for this gain per triangle there, as a
+    part of the mean energy of a triangle."""
     calm_relocated: float = 0.015
     """As `relocated`, in a followed picture."""
     calm_profit: float = 3.0
@@ -66,7 +71,7 @@ class Energy:
         thin = CALM_SLIVER_HEIGHT if goal.calm else SLIVER_HEIGHT
         mesh = collapse_slivers(mesh, thin, most_rounds=SLIVER_ROUNDS)
         free = np.ones(mesh.triangle_count, dtype=bool)
-        flips = ranked_flips(mesh, appraiser, self.calm_flip if goal.calm else 0.0)
+        flips = self._flips(mesh, appraiser, goal)
         flips = flips[independent_flips(mesh, flips)]
         if self._is_growing(mesh, goal) and len(flips):
             mesh, flips = flip_edges(mesh, flips), flips[:0]
@@ -79,6 +84,13 @@ class Energy:
         mesh = flip_edges(mesh, flips) if len(flips) else mesh
         mesh = split_edges(mesh, splits[some], points[some]) if len(some) else mesh
         return collapse_edges(mesh, going) if len(going) else mesh
+
+    def _flips(self, mesh: Mesh, appraiser: Appraiser, goal: Goal) -> np.ndarray:
+        """Edges whose flip pays, best first."""
+        if not goal.calm:
+            return ranked_flips(mesh, appraiser, least_share=0.0, floor=0.0)
+        floor = self.calm_flip_floor * appraiser.energies(mesh).mean()
+        return ranked_flips(mesh, appraiser, self.calm_flip, floor)
 
     def _splits(
         self, mesh: Mesh, appraiser: Appraiser, goal: Goal
@@ -121,8 +133,11 @@ class Energy:
         # a vertex away pays for one split of an inner edge: two triangles
         pairs = max(0, min(len(going), most) - excess)
         pairs = min(pairs, len(gains))
-        profit = self.calm_profit if goal.calm else self.profit
-        elsewhere = gains[:pairs] > profit * costs[excess : excess + pairs]
+        profit, floor = self.profit, 0.0
+        if goal.calm:
+            profit, floor = self.calm_profit, self.calm_floor * appraiser.energies(mesh).mean()
+        worth = np.maximum(profit * costs[excess : excess + pairs], floor)
+        elsewhere = gains[:pairs] > worth
         going = going[: excess + int(elsewhere.sum())]
         _, corners = stars(mesh, mesh.triangles.reshape(-1)[going])
         free[corners // 3] = False

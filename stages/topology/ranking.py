@@ -14,19 +14,22 @@ LEAST_EXAMINED = 100
 """Splits measured at least: where few are wanted all of eight may touch other changes."""
 
 
-def ranked_flips(mesh: Mesh, appraiser: Appraiser, least_share: float) -> np.ndarray:
+def ranked_flips(
+    mesh: Mesh, appraiser: Appraiser, least_share: float, floor: float
+) -> np.ndarray:
     """Edges of the measured mesh whose flip pays.
 
     Args:
         mesh: The measured mesh.
         appraiser: Has measured it.
         least_share: Smallest gain, as a part of the energy of the edge's two triangles.
+        floor: Smallest gain [code value^2 px].
     """
     energies = appraiser.energies(mesh)
     edges = mesh.edge_half_edges
     gains = appraiser.flip_gains(edges)
     before = energies[edges // 3] + energies[np.maximum(mesh.twins[edges], 0) // 3]
-    wanted = gains > np.maximum(least_share * before, LEAST_GAIN)
+    wanted = gains > np.maximum(least_share * before, max(floor, LEAST_GAIN))
     edges, gains = edges[wanted], gains[wanted]
     edges = edges[np.argsort(-gains, kind="stable")]
     return edges[flippable(mesh, edges)]

@@ -1,0 +1,49 @@
+"""What leads from one picture to the next."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from stages.flows.field import FlowField
+from stages.flows.vote import reduced, vote
+
+DOUBTFUL = 2.0
+"""Motion is trusted by half where patches differ by this [code values]: twice what noise makes
+of a clean clip once its pictures are reduced."""
+
+
+@dataclass(frozen=True, eq=False)
+class Passage:
+    """Motion from a picture to the next, and both pictures to check it against."""
+
+    flow: FlowField
+    """The estimate."""
+    earlier: np.ndarray
+    """The picture that it leads from, `reduced`."""
+    later: np.ndarray
+    """The picture that it leads to, `reduced`."""
+    is_still: bool
+    """Whether both pictures are the same to the bit."""
+
+    @classmethod
+    def along(cls, flow: FlowField, earlier: np.ndarray, later: np.ndarray) -> "Passage":
+        """The passage between two pictures.
+
+        Args:
+            flow: Motion from the earlier to the later one.
+            earlier: Shape [H, W, 3] uint8.
+            later: Of the same shape.
+        """
+        return cls(flow, reduced(earlier), reduced(later), np.array_equal(earlier, later))
+
+    def follow(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Motion of points, each of which stands on what is in front.
+
+        Args:
+            points: Positions in the earlier picture [px], shape [N, 2].
+
+        Returns:
+            Motion [px], shape [N, 2], and how far it is to be trusted [0..1], shape [N].
+        """
+        steps, misfits = vote(points, self.flow, self.earlier, self.later)
+        return steps, 1.0 / (1.0 + (misfits.astype(np.float64) / DOUBTFUL) ** 2)

@@ -1,0 +1,104 @@
+"""Motion of single points: the pictures around them decide between the motions nearby.
+
+Vertices stand on the outlines of things, which is where an estimate of motion is worst: it mixes
+what is in front with what is behind. An outline belongs to what is in front, and so does most of
+the contrast around it; so the motion that brings the patch around a point to where it looks the
+same is that of the outline.
+"""
+
+import cv2
+import numpy as np
+
+from stages.flows.field import FlowField
+
+LINES = 180
+"""The patches are cut from pictures whose short side is at most this long [px]."""
+REACH = 3.0
+"""How far around a point other motions are looked at [px of those pictures]."""
+DIRECTIONS = 8
+"""How many of them."""
+HALF_PATCH = 3
+"""A patch reaches this far from its point [px of those pictures]."""
+BIAS = 1.0
+"""By how much the patch of another motion must fit better than that of the motion at the point
+itself, or than standing still [code values]."""
+MOST_ROWS = 30000
+"""Points that OpenCV samples in one call: it takes pictures of less than 32768 rows."""
+
+
+def reduced(picture: np.ndarray) -> np.ndarray:
+    """A picture as patches are compared: small and grey, for colours hardly change the vote.
+
+    Args:
+        picture: Shape [H, W, 3] uint8.
+
+    Returns:
+        Shape [h, w] uint8.
+    """
+    grey = cv2.cvtColor(picture, cv2.COLOR_RGB2GRAY)
+    height, width = grey.shape
+    scale = min(1.0, LINES / min(height, width))
+    size = (max(1, round(scale * width)), max(1, round(scale * height)))
+    return cv2.resize(grey, size, interpolation=cv2.INTER_AREA)
+
+
+def vote(
+    points: np.ndarray, flow: FlowField, earlier: np.ndarray, later: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Choose a motion for each point: of those around it the one that its patch confirms.
+
+    Args:
+        points: Positions in the earlier picture [px], shape [N, 2].
+        flow: Motion from the earlier picture to the later one.
+        earlier: The earlier picture, `reduced`.
+        later: The later picture, `reduced`.
+
+    Returns:
+        Motion [px], shape [N, 2], and how badly the patch fits there: mean absolute difference
+        [code values], shape [N].
+    """
+    scale = np.array([earlier.shape[1] / flow.width, earlier.shape[0] / flow.height])
+    angles = np.arange(DIRECTIONS) * (2.0 * np.pi / DIRECTIONS)
+    around = REACH * np.stack([np.cos(angles), np.sin(angles)], axis=1) / scale
+    places = points + np.concatenate([np.zeros((1, 2)), around])[:, None]
+    motions = flow.at(places.reshape(-1, 2)).reshape(places.shape)
+    motions = np.insert(motions, 1, 0.0, axis=0)
+    misfits = _misfits(scale * points, scale * motions, earlier, later)
+    handicap = np.full((len(motions), 1), BIAS, dtype=np.float32)
+    handicap[:2] = 0.0  # the motion at the point itself, then standing still
+    chosen = (misfits + handicap).argmin(axis=0), np.arange(len(points))
+    return motions[chosen], misfits[chosen]
+
+
+def _misfits(
+    points: np.ndarray, motions: np.ndarray, earlier: np.ndarray, later: np.ndarray
+) -> np.ndarray:
+    """How badly the patch around each point fits where each of its motions takes it.
+
+    Args:
+        points: Positions [px of the pictures], shape [N, 2].
+        motions: Steps [px of the pictures], shape [K, N, 2].
+        earlier: Where patches are cut, shape [h, w] uint8.
+        later: Where they are laid, of the same shape.
+
+    Returns:
+        Mean absolute difference [code values], shape [K, N].
+    """
+    side = np.arange(-HALF_PATCH, HALF_PATCH + 1, dtype=np.float32)
+    patch = np.stack(np.meshgrid(side, side), axis=-1).reshape(-1, 2)
+    centres = (points - 0.5).astype(np.float32)
+    cut = _sampled(earlier, centres[:, None] + patch)
+    laid = _sampled(later, (centres + motions.astype(np.float32)).reshape(-1, 1, 2) + patch)
+    laid = laid.reshape(len(motions), *cut.shape)
+    return cv2.absdiff(laid, np.broadcast_to(cut, laid.shape)).mean(axis=2, dtype=np.float32)
+
+
+def _sampled(picture: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """A picture at places [N, P, 2], bilinear and continued beyond its border; [N, P] uint8."""
+    parts = [
+        cv2.remap(
+            picture, part, None, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE
+        )
+        for part in np.split(places, range(MOST_ROWS, len(places), MOST_ROWS))
+    ]
+    return np.concatenate(parts)
