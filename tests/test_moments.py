@@ -82,10 +82,10 @@ def sums_by_kernel(workspace: Workspace, mesh: Mesh) -> Sums:
 
 
 def gathered(mesh: Mesh, edge_sums: np.ndarray) -> np.ndarray:
-    """Sums of triangles, [T, 13, M], from those of edges, [E, 9, M]."""
+    """Sums of triangles, [T, 13, M], from those of edges, [E, M, 9]."""
     edges = mesh.half_edge_to_edge.reshape(-1, 3)
     backwards = mesh.half_edge_reversed.reshape(-1, 3).astype(int)
-    total = np.zeros((mesh.triangle_count, TRIANGLE_VARIANTS, edge_sums.shape[2]), dtype=np.int64)
+    total = np.zeros((mesh.triangle_count, TRIANGLE_VARIANTS, edge_sums.shape[1]), dtype=np.int64)
     for variant in range(TRIANGLE_VARIANTS):
         moved, direction = divmod(variant - 1, DIRECTIONS)
         for side in range(3):
@@ -93,7 +93,7 @@ def gathered(mesh: Mesh, edge_sums: np.ndarray) -> np.ndarray:
             if moved in (side, (side + 1) % 3):
                 end = backwards[:, side] ^ int(moved != side)
                 version = 1 + DIRECTIONS * end + direction
-            sums = edge_sums[edges[:, side], version]
+            sums = edge_sums[edges[:, side], :, version]
             total[:, variant] += (1 - 2 * backwards[:, side])[:, None] * sums
     return total
 

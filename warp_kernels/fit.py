@@ -113,8 +113,8 @@ def _fit_kernel(layout: MomentLayout) -> Any:
         span: wp.array(dtype=wp.vec2i),
         # In:
         sides: wp.array(dtype=wp.vec3i),
-        color_sums: wp.array2d(dtype=color_type),
-        area_sums: wp.array2d(dtype=area_type),
+        color_sums: wp.array3d(dtype=types.integer),
+        area_sums: wp.array3d(dtype=types.integer),
         gauge: wp.array(dtype=wp.vec3d),
         width: int,
         height: int,
@@ -180,8 +180,8 @@ def record_fit(
         device: Where to run.
         layout: The polynomial colour and its integers.
         sides: See `record_energies`.
-        color_sums: Colour moments, [E, 1].
-        area_sums: Area moments, [E, 1].
+        color_sums: Colour moments, [E, 4 K, 1].
+        area_sums: Area moments, [E, G, 1].
         gauge: 1 / mean weight, and how far pixels lie from the image's middle along x and along y
             [px], [1] vec3d.
         size: Width and height of the image [px].

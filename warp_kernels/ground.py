@@ -31,10 +31,10 @@ def ground_type(layout: MomentLayout) -> Any:
         """E(T) as it stands [code value^2 px], [T]."""
         sides: wp.array(dtype=wp.vec3i)
         """For each side of a triangle 2 * edge + (1 where the edge runs the other way), [T]."""
-        color_sums: wp.array2d(dtype=types.color)
-        """Colour moments left of every edge as it stands, [E, 1]."""
-        area_sums: wp.array2d(dtype=types.area)
-        """Area moments left of every edge, [E, 1]."""
+        color_sums: wp.array3d(dtype=types.integer)
+        """Colour moments left of every edge as it stands, [E, 4 K, 1]."""
+        area_sums: wp.array3d(dtype=types.integer)
+        """Area moments left of every edge, [E, G, 1]."""
         table: wp.array(dtype=types.entry)
         """Prefix sums of the image, see `image_tables`."""
         powers: wp.array(dtype=types.powers)

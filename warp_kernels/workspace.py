@@ -217,7 +217,7 @@ class Workspace:
         return float(self.device.read(self._energies, self._counts[1])[:, 0].sum())
 
     def moments(self) -> tuple[np.ndarray, np.ndarray]:
-        """Colour and area sums as they stand: [E, 9, .] with edges, [T, 13, .] with fragments.
+        """Colour and area sums as they stand: [E, ., 9] with edges, [T, 13, .] with fragments.
 
         int64; in the wide layout the highest powers modulo 2^64.
         """
@@ -263,9 +263,6 @@ class Workspace:
         self.generation += 1
         edges = vertices + triangles + 1  # Euler: E = V + T - 1 in a disc
         types = moment_types(self.layout)
-        rows = (edges, EDGE_VERSIONS)
-        if self.sums == "fragments":
-            rows = (triangles, TRIANGLE_VARIANTS)
         self._vertices = (self._empty(vertices, wp.vec2d), self._empty(vertices, wp.vec2d))
         self.triangles = self._empty(triangles, wp.vec3i)
         self._edges = self._empty(edges, wp.vec2i)
@@ -276,20 +273,25 @@ class Workspace:
         self._anchors = self._empty(vertices, wp.vec3d)
         self._memory = self._empty(vertices, wp.vec4d)
         self._moved = self._empty(vertices, wp.int32)
-        self._color_sums = self._empty(rows, types.color)
-        self._area_sums = self._empty(rows, types.area)
+        if self.sums == "fragments":
+            self._color_sums = self._empty((triangles, TRIANGLE_VARIANTS), types.color)
+            self._area_sums = self._empty((triangles, TRIANGLE_VARIANTS), types.area)
+        else:
+            self._color_sums, self._area_sums = self._edge_sums(edges, EDGE_VERSIONS)
         self._energies = self._empty((triangles, TRIANGLE_VARIANTS), wp.float64)
-        self.fit_color_sums = self._empty((edges, 1), types.color)
-        self.fit_area_sums = self._empty((edges, 1), types.area)
+        self.fit_color_sums, self.fit_area_sums = self._edge_sums(edges, 1)
         self._coefficients = self._empty((triangles, 3, self.model.term_count), wp.float64)
         self.fit_energies = self._empty(triangles, wp.float64)
         self._fit_counts = self._empty(triangles, wp.int64)
-        self._record()
-
-    def _record(self) -> None:
-        """Record every launch anew: the arrays have moved."""
-        self._record_iteration()
+        self._record_iteration()  # the arrays have moved
         self._record_fit()
+
+    def _edge_sums(self, edges: int, versions: int) -> tuple[wp.array, wp.array]:
+        """Arrays for the colour and area moments of edges."""
+        integer = moment_types(self.layout).integer
+        counts = (4 * self.model.term_count, self.model.area_count)
+        color, area = (self._empty((edges, count, versions), integer) for count in counts)
+        return color, area
 
     def _record_iteration(self) -> None:
         """Moments, energies and steps; steps go to and fro between two arrays of vertices."""
