@@ -12,10 +12,9 @@ from typing import Any
 import warp as wp
 
 from warp_kernels.device import Device, Phase
-from warp_kernels.image_tables import BLOCK_ROWS
-from warp_kernels.moment_layout import ENTRY, MomentLayout, moment_types
-from warp_kernels.raster import column_of, to_fixed, walk_edge
-from warp_kernels.running_sums import area_adder, area_settler, color_adder, color_settler
+from warp_kernels.line_moments import line_moments
+from warp_kernels.moment_layout import MomentLayout, moment_types
+from warp_kernels.raster import to_fixed, walk_edge
 from warp_kernels.variants import EDGE_VERSIONS, end_displacement
 from warp_kernels.walk_rows import row_walker
 
@@ -106,11 +105,7 @@ def _side_by_side_kernel(layout: MomentLayout) -> Any:
 def _edge_kernel(layout: MomentLayout, versions: int) -> Any:
     """The kernel of which every thread walks one version of an edge."""
     types, model = moment_types(layout), layout.model
-    color_type, area_type, integer, word = types.color, types.area, types.integer, types.word
-    add_color, add_area = color_adder(layout), area_adder(layout)
-    settle_color, settle_area = color_settler(layout), area_settler(layout)
-    words = ENTRY * layout.depth
-    row_bytes = layout.word_bytes * words
+    _, left_of = line_moments(layout)
 
     @wp.kernel(module="unique", module_options=EDGE_OPTIONS)
     def sum_along_edges(
@@ -124,8 +119,8 @@ def _edge_kernel(layout: MomentLayout, versions: int) -> Any:
         width: int,
         height: int,
         # Out:
-        color_out: wp.array3d(dtype=integer),
-        area_out: wp.array3d(dtype=integer),
+        color_out: wp.array3d(dtype=types.integer),
+        area_out: wp.array3d(dtype=types.integer),
     ):
         """Walk down the rows that it crosses."""
         number = span[0][0] + wp.tid()
@@ -138,33 +133,11 @@ def _edge_kernel(layout: MomentLayout, versions: int) -> Any:
             return  # the sums of an edge at rest still stand
         a = to_fixed(vertices[ends[0]]) + end_displacement(version, 0, probe[0])
         b = to_fixed(vertices[ends[1]]) + end_displacement(version, 1, probe[0])
-        walk = walk_edge(a, b, height)
-        color = color_type()
-        area = area_type()
-        pitch = wp.uint64(width + 1) * wp.uint64(wp.static(BLOCK_ROWS * row_bytes))
-        row = walk.row_begin
-        while row < walk.row_end:
-            block = row / wp.static(BLOCK_ROWS)
-            inner = wp.uint64(row - block * wp.static(BLOCK_ROWS))
-            address = table.ptr + wp.uint64(block) * pitch
-            address += inner * wp.uint64(wp.static(row_bytes))
-            # a plain array from the row on: its index is never negative and its stride is known
-            length = wp.static(BLOCK_ROWS * words) * (width + 1)
-            line = wp.array(ptr=address, shape=(length,), dtype=word)
-            column = wp.max(wp.min(column_of(walk.position), width), 0)
-            color = add_color(color, line, column)
-            area = add_area(area, line, column)
-            walk.position += walk.step
-            row += 1
-        last = integer(walk.row_end - height / 2)
-        middle = integer(width / 2)
-        nothing = integer(width >> 31)
-        color = settle_color(color, last, integer(walk.sign), nothing)
-        area = settle_area(area, last, middle, integer(walk.sign))
+        line = left_of(a, b, table, width, height)
         for n in range(wp.static(4 * model.term_count)):
-            color_out[edge, n, version] = color[n]
+            color_out[edge, n, version] = line.color[n]
         for n in range(wp.static(model.area_count)):
-            area_out[edge, n, version] = area[n]
+            area_out[edge, n, version] = line.area[n]
 
     return sum_along_edges
 

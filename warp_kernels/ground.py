@@ -37,12 +37,12 @@ def ground_type(layout: MomentLayout) -> Any:
         """Area moments left of every edge, [E, G, 1]."""
         table: wp.array(dtype=types.entry)
         """Prefix sums of the image, see `image_tables`."""
-        powers: wp.array(dtype=types.powers)
-        """Sums of x^a left of each column, [W + 1]."""
         gauge: wp.array(dtype=wp.vec3d)
         """The scale of energies and the size of the picture, see `fit`, [1]."""
         limits: wp.array(dtype=wp.float64)
         """Smallest height [px] and largest area [px^2] of the triangles that a change makes."""
+        width: int
+        """Columns of the image [px]."""
         height: int
         """Rows of the image [px]."""
 

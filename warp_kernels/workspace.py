@@ -17,7 +17,7 @@ from warp_kernels.fit import record_fit
 from warp_kernels.fragments import record_fragment_moments
 from warp_kernels.image_tables import record_image_tables, table_length
 from warp_kernels.moment_layout import layout_of_moments, moment_types
-from warp_kernels.moments import check_size, column_powers
+from warp_kernels.moments import check_size
 from warp_kernels.pixel_weights import reduced_weights
 from warp_kernels.raster import SUBPIXELS
 from warp_kernels.solve import record_energies
@@ -67,7 +67,6 @@ class Workspace:
         self.gauge = self._empty(1, wp.vec3d)
         self._load_weights(None)
         self.table = self._empty(table_length(width, height, self.layout), types.entry)
-        self.powers = wp.array(column_powers(width, model), dtype=types.powers, device=device.warp)
         self._controls = self._empty(3, wp.float64)
         self._probe = self._empty(1, wp.int32)
         self._displacement = 0.0
