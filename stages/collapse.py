@@ -4,7 +4,6 @@ import numpy as np
 
 from stages.edits import (
     collapse_edges,
-    collapsible,
     flip_edges,
     flippable,
     independent_collapses,
@@ -12,7 +11,7 @@ from stages.edits import (
     press_onto_border,
     pressable,
 )
-from stages.edits.collapse_edges import collapsed_heights
+from stages.edits.collapse_edges import collapsed_heights, keeps_border
 from stages.edits.flip_edges import flipped_heights
 from stages.edits.independent import first_come
 from stages.edits.neighbourhood import edge_ends, edge_triangles, stars
@@ -51,6 +50,8 @@ def collapse_slivers(
     # Every round removes triangles or raises the lowest heights, so the rounds end.
     for _ in range(most_rounds):
         slivers = np.flatnonzero((mesh.heights < min_height) | (mesh.areas < min_area))
+        if not len(slivers):
+            break
         slivers = slivers[np.argsort(mesh.heights[slivers], kind="stable")]
         mended = _press(mesh, slivers, min_height)
         if mended is mesh:
@@ -97,11 +98,12 @@ def _collapse(mesh: Mesh, slivers: np.ndarray, rank: int, min_height: float) -> 
     reverse = np.tile([False, True], len(slivers))
     origins, destinations = edge_ends(mesh, half_edges, reverse)
     before, after = _heights_around(mesh, origins, destinations)
+    legal = keeps_border(mesh, half_edges, origins)
+    legal &= (after > 0) & (after >= np.minimum(before, min_height))
     # Of the two directions of an edge the better one comes first.
     order = np.lexsort([-after, np.repeat(np.arange(len(slivers)), 2)])
-    half_edges, reverse, before = half_edges[order], reverse[order], before[order]
-    legal = collapsible(mesh, half_edges, np.minimum(before, min_height), reverse)
-    half_edges, reverse = half_edges[legal], reverse[legal]
+    order = order[legal[order]]
+    half_edges, reverse = half_edges[order], reverse[order]
     chosen = independent_collapses(mesh, half_edges, reverse)
     if not chosen.any():
         return mesh

@@ -80,7 +80,7 @@ def _fan_below(x: float, inner_x: float) -> Mesh:
 @pytest.mark.parametrize("sums", ["edges", "fragments"])
 def test_a_narrow_probe_finds_the_place_of_edges(sums: str, model: ColorModel, device: str) -> None:
     """A quarter of a pixel sees what a pixel has blurred; sums of another distance are void."""
-    mesh = random_mesh(WIDTH, HEIGHT, 30, seed=4)
+    mesh = random_mesh(WIDTH, HEIGHT, 30, seed=7)
     totals = []
     for displacement in (1.0, 0.25):
         workspace = poisoned_workspace(Device(device), waves(WIDTH, HEIGHT), mesh, model, sums)

@@ -23,7 +23,7 @@ from warp_kernels.errors import OptionError
 from warp_kernels.fit import READABLE
 from warp_kernels.image_tables import BLOCK_ROWS, record_image_tables, table_length
 from warp_kernels.moment_layout import MomentLayout, layout_of_moments, moment_types
-from warp_kernels.moments import check_size, column_powers
+from warp_kernels.moments import check_size
 from warp_kernels.raster import MAX_SIDE
 from warp_kernels.variants import DIRECTIONS, TRIANGLE_VARIANTS
 from warp_kernels.workspace import Workspace
@@ -82,10 +82,10 @@ def sums_by_kernel(workspace: Workspace, mesh: Mesh) -> Sums:
 
 
 def gathered(mesh: Mesh, edge_sums: np.ndarray) -> np.ndarray:
-    """Sums of triangles, [T, 13, M], from those of edges, [E, 9, M]."""
+    """Sums of triangles, [T, 13, M], from those of edges, [E, M, 9]."""
     edges = mesh.half_edge_to_edge.reshape(-1, 3)
     backwards = mesh.half_edge_reversed.reshape(-1, 3).astype(int)
-    total = np.zeros((mesh.triangle_count, TRIANGLE_VARIANTS, edge_sums.shape[2]), dtype=np.int64)
+    total = np.zeros((mesh.triangle_count, TRIANGLE_VARIANTS, edge_sums.shape[1]), dtype=np.int64)
     for variant in range(TRIANGLE_VARIANTS):
         moved, direction = divmod(variant - 1, DIRECTIONS)
         for side in range(3):
@@ -93,7 +93,7 @@ def gathered(mesh: Mesh, edge_sums: np.ndarray) -> np.ndarray:
             if moved in (side, (side + 1) % 3):
                 end = backwards[:, side] ^ int(moved != side)
                 version = 1 + DIRECTIONS * end + direction
-            sums = edge_sums[edges[:, side], version]
+            sums = edge_sums[edges[:, side], :, version]
             total[:, variant] += (1 - 2 * backwards[:, side])[:, None] * sums
     return total
 
@@ -228,15 +228,6 @@ def test_prefix_tables_are_cumulative_sums(
     for threads in (1, 2):
         actual = prefix_table(picture, layout, Device(device, threads), weights)
         np.testing.assert_array_equal(actual, prefix_sums(picture, layout, weights))
-
-
-@MODELS
-def test_column_powers_are_cumulative_sums(model: ColorModel) -> None:
-    """Sums of powers of x, counted from the middle, by the definition."""
-    actual = column_powers(9, model)
-    for column in range(10):
-        expected = [sum((x - 4) ** a for x in range(column)) for a in range(2 * model.degree + 1)]
-        assert actual[column].tolist() == expected
 
 
 def test_largest_prefix_sums_fit_int32(device: str) -> None:

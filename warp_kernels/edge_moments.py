@@ -12,46 +12,41 @@ from typing import Any
 import warp as wp
 
 from warp_kernels.device import Device, Phase
-from warp_kernels.image_tables import BLOCK_ROWS
-from warp_kernels.moment_layout import ENTRY, MomentLayout, moment_types
-from warp_kernels.raster import column_of, to_fixed, walk_edge
-from warp_kernels.running_sums import area_adder, area_settler, color_adder, color_settler
+from warp_kernels.line_moments import line_moments
+from warp_kernels.moment_layout import MomentLayout, moment_types
+from warp_kernels.raster import to_fixed, walk_edge
 from warp_kernels.variants import EDGE_VERSIONS, end_displacement
+from warp_kernels.walk_rows import row_walker
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 
 EDGE_OPTIONS = {
     "enable_backward": False,
     "fuse_fp": False,
-    "cpu_compiler_flags": "-march=native -mprefer-vector-width=512 -fno-vectorize"
-    " -mllvm=-inline-threshold=9000 -mllvm=-inline-cold-callsite-threshold=3000"
-    " -mllvm=-slp-recursion-max-depth=12",
+    "cpu_compiler_flags": "-march=native -mprefer-vector-width=512",
 }
-"""LLVM is to put several versions of an edge into one register, not several rows of one version,
-which it would have to gather from all over the table; for that it must look deeper than Warp lets
-it, and use the widest registers that there are (linear colours take a third less time). The other
-flags are Warp's own."""
+"""The widest registers that there are: eight sums fill one."""
 
 
 @cache
-def _walk_starter(lanes: int) -> Any:
-    """A wp.func: start the walks of `lanes` versions of an edge in one common row."""
-    int_lanes = wp.types.vector(length=lanes, dtype=wp.int32)
-    long_lanes = wp.types.vector(length=lanes, dtype=wp.int64)
+def _walk_starter() -> Any:
+    """A wp.func: start the walks of all versions of an edge in one common row."""
+    ints = wp.types.vector(length=EDGE_VERSIONS, dtype=wp.int32)
+    longs = wp.types.vector(length=EDGE_VERSIONS, dtype=wp.int64)
 
     @wp.func
-    def start_walks(a: wp.vec2i, b: wp.vec2i, probe: int, first: int, height: int):
-        """Versions from `first` on: per version `EdgeWalk`, then the first and the end row."""
-        position = long_lanes()
-        step = long_lanes()
-        row_begin = int_lanes()
-        row_count = int_lanes()
-        sign = int_lanes()
+    def start_walks(a: wp.vec2i, b: wp.vec2i, probe: int, height: int):
+        """Per version what `EdgeWalk` holds, then the first and the end row."""
+        position = longs()
+        step = longs()
+        row_begin = ints()
+        row_count = ints()
+        sign = ints()
         row = height
         end = int(0)
-        for i in range(wp.static(lanes)):
-            start_move = end_displacement(first + i, 0, probe)
-            end_move = end_displacement(first + i, 1, probe)
+        for i in range(wp.static(EDGE_VERSIONS)):
+            start_move = end_displacement(i, 0, probe)
+            end_move = end_displacement(i, 1, probe)
             walk = walk_edge(a + start_move, b + end_move, height)
             position[i] = walk.position
             step[i] = walk.step
@@ -60,7 +55,7 @@ def _walk_starter(lanes: int) -> Any:
             sign[i] = walk.sign
             row = wp.min(row, walk.row_begin)
             end = wp.max(end, walk.row_end)
-        for i in range(wp.static(lanes)):
+        for i in range(wp.static(EDGE_VERSIONS)):
             position[i] -= wp.int64(row_begin[i] - row) * step[i]
         return position, step, row_begin, row_count, sign, row, end
 
@@ -68,18 +63,10 @@ def _walk_starter(lanes: int) -> Any:
 
 
 @cache
-def _edge_kernel(layout: MomentLayout, versions: int, lanes: int) -> Any:
-    """The kernel of which every thread walks `lanes` of an edge's versions side by side."""
-    types, model = moment_types(layout), layout.model
-    color_type, area_type, integer, word = types.color, types.area, types.integer, types.word
-    add_color, add_area = color_adder(layout), area_adder(layout)
-    settle_color, settle_area = color_settler(layout), area_settler(layout)
-    start_walks = _walk_starter(lanes)
-    parts = versions // lanes
-    words = ENTRY * layout.depth
-    row_bytes = layout.word_bytes * words
-    color_lanes = wp.types.matrix(shape=(lanes, 4 * model.term_count), dtype=integer)
-    area_lanes = wp.types.matrix(shape=(lanes, model.area_count), dtype=integer)
+def _side_by_side_kernel(layout: MomentLayout) -> Any:
+    """The kernel of which every thread walks all versions of an edge, in the narrow layout."""
+    types = moment_types(layout)
+    start_walks, walk_rows = _walk_starter(), row_walker(layout)
 
     @wp.kernel(module="unique", module_options=EDGE_OPTIONS)
     def sum_along_edges(
@@ -93,49 +80,64 @@ def _edge_kernel(layout: MomentLayout, versions: int, lanes: int) -> Any:
         width: int,
         height: int,
         # Out:
-        color_out: wp.array2d(dtype=color_type),
-        area_out: wp.array2d(dtype=area_type),
+        color_out: wp.array3d(dtype=types.integer),
+        area_out: wp.array3d(dtype=types.integer),
     ):
         """Walk down all rows that any of the versions crosses."""
+        edge = span[0][0] + wp.tid()
+        if edge >= span[0][1]:
+            return
+        ends = edges[edge]
+        if moved[ends[0]] + moved[ends[1]] == 0:
+            return  # the sums of an edge at rest still stand
+        position, step, row_begin, row_count, sign, row, end = start_walks(
+            to_fixed(vertices[ends[0]]), to_fixed(vertices[ends[1]]), probe[0], height
+        )
+        walk_rows(
+            position, step, row_begin, row_count, sign, row, end, table.ptr, width, height, edge,
+            color_out, area_out,
+        )  # fmt: skip
+
+    return sum_along_edges
+
+
+@cache
+def _edge_kernel(layout: MomentLayout, versions: int) -> Any:
+    """The kernel of which every thread walks one version of an edge."""
+    types, model = moment_types(layout), layout.model
+    _, left_of = line_moments(layout)
+
+    @wp.kernel(module="unique", module_options=EDGE_OPTIONS)
+    def sum_along_edges(
+        span: wp.array(dtype=wp.vec2i),
+        # In:
+        vertices: wp.array(dtype=wp.vec2d),
+        edges: wp.array(dtype=wp.vec2i),
+        moved: wp.array(dtype=int),
+        probe: wp.array(dtype=int),
+        table: wp.array(dtype=types.entry),
+        width: int,
+        height: int,
+        # Out:
+        color_out: wp.array3d(dtype=types.integer),
+        area_out: wp.array3d(dtype=types.integer),
+    ):
+        """Walk down the rows that it crosses."""
         number = span[0][0] + wp.tid()
         if number >= span[0][1]:
             return
-        edge = number / wp.static(parts)
-        first = (number - edge * wp.static(parts)) * wp.static(lanes)
+        edge = number / wp.static(versions)
+        version = number - edge * wp.static(versions)
         ends = edges[edge]
         if wp.static(versions > 1) and moved[ends[0]] + moved[ends[1]] == 0:
             return  # the sums of an edge at rest still stand
-        a = to_fixed(vertices[ends[0]])
-        b = to_fixed(vertices[ends[1]])
-        position, step, row_begin, row_count, sign, row, end = start_walks(
-            a, b, probe[0], first, height
-        )
-        color = color_lanes()
-        area = area_lanes()
-        pitch = wp.uint64(width + 1) * wp.uint64(wp.static(BLOCK_ROWS * row_bytes))
-        while row < end:
-            block = row / wp.static(BLOCK_ROWS)
-            inner = wp.uint64(row - block * wp.static(BLOCK_ROWS))
-            address = table.ptr + wp.uint64(block) * pitch
-            address += inner * wp.uint64(wp.static(row_bytes))
-            # a plain array from the row on: its index is never negative and its stride is known
-            length = wp.static(BLOCK_ROWS * words) * (width + 1)
-            line = wp.array(ptr=address, shape=(length,), dtype=word)
-            for i in range(wp.static(lanes)):
-                column = wp.max(wp.min(column_of(position[i]), width), 0)
-                # where a version does not cross the row it reads column 0: nothing lies left of it
-                inside = wp.uint32(row - row_begin[i]) < wp.uint32(row_count[i])
-                column = wp.where(inside, column, 0)
-                color[i] = add_color(color[i], line, column)
-                area[i] = add_area(area[i], line, column)
-            position += step
-            row += 1
-        last = integer(end - height / 2)
-        middle = integer(width / 2)
-        nothing = integer(width >> 31)
-        for i in range(wp.static(lanes)):
-            color_out[edge, first + i] = settle_color(color[i], last, integer(sign[i]), nothing)
-            area_out[edge, first + i] = settle_area(area[i], last, middle, integer(sign[i]))
+        a = to_fixed(vertices[ends[0]]) + end_displacement(version, 0, probe[0])
+        b = to_fixed(vertices[ends[1]]) + end_displacement(version, 1, probe[0])
+        line = left_of(a, b, table, width, height)
+        for n in range(wp.static(4 * model.term_count)):
+            color_out[edge, n, version] = line.color[n]
+        for n in range(wp.static(model.area_count)):
+            area_out[edge, n, version] = line.area[n]
 
     return sum_along_edges
 
@@ -168,8 +170,9 @@ def record_edge_moments(
         probe: How far ends are displaced [1/256 px], [1].
         table: Prefix sums of the image, see `image_tables`.
         size: Width and height of the image [px].
-        color_out: Colour moments, [E, versions] vectors of 4 K integers.
-        area_out: Area moments, [E, versions] vectors of G integers.
+        color_out: Colour moments, [E, 4 K, versions]: those of a moment lie side by side, so that
+            a processor reads several versions at once.
+        area_out: Area moments, [E, G, versions].
         versions: 9 for the gradient, 1 for the edge itself alone.
 
     Source: Lawonn & Guenther (2018), Sec. 4.1-4.2, Eqs. 11, 13-15.
@@ -179,6 +182,7 @@ def record_edge_moments(
     inputs = [vertices, edges, moved, probe, table, size[0], size[1]]
     # versions share vector registers on a CPU, unless the sums of one fill them all; on CUDA more
     # threads are worth more
-    lanes = 1 if device.is_cuda or layout.wide else versions
-    kernel = _edge_kernel(layout, versions, lanes)
-    return device.record(kernel, inputs, [color_out, area_out], per_element=versions // lanes)
+    if versions == EDGE_VERSIONS and not (device.is_cuda or layout.wide):
+        return device.record(_side_by_side_kernel(layout), inputs, [color_out, area_out])
+    kernel = _edge_kernel(layout, versions)
+    return device.record(kernel, inputs, [color_out, area_out], per_element=versions)

@@ -66,9 +66,9 @@ def fit_moments(layout: MomentLayout) -> Any:
         sign = wp.where(total < wp.int64(0), wp.float64(-1.0), wp.float64(1.0))
         result.count = sign * wp.float64(total)
         if wp.static(terms > 1):
-            count = wp.max(result.count, wp.float64(1.0))
-            result.x = wp.trunc(sign * wp.float64(wp.int64(area_sums[1])) / count)
-            result.y = wp.trunc(sign * wp.float64(wp.int64(area_sums[2])) / count)
+            share = sign / wp.max(result.count, wp.float64(1.0))
+            result.x = wp.trunc(share * wp.float64(wp.int64(area_sums[1])))
+            result.y = wp.trunc(share * wp.float64(wp.int64(area_sums[2])))
         area = centre_area(area_sums, sign, result.x, result.y)
         color = centre_color(color_sums, sign, result.x, result.y)
         trusted = wp.float64(1.0)
@@ -80,16 +80,12 @@ def fit_moments(layout: MomentLayout) -> Any:
         result.lower = factorise(area, trusted)
         explained = wp.float64(0.0)
         for i in range(wp.static(terms)):
-            pivot = result.lower[i, i]
-            some = pivot > wp.float64(0.0)
-            divisor = wp.where(some, pivot, wp.float64(1.0))
             for channel in range(3):
                 value = color[4 * i + channel]
                 for k in range(i):
                     value -= result.lower[i, k] * result.half[k, channel]
-                value = wp.where(some, value / divisor, wp.float64(0.0))
-                result.half[i, channel] = value
-                explained += value * value
+                result.half[i, channel] = value * result.lower[i, i]
+                explained += value * result.half[i, channel]
         left = wp.max(color[wp.static(SQUARE)] - explained, wp.float64(0.0))
         result.energy = wp.float64(0.5) * left
         if wp.static(wide):
@@ -113,8 +109,8 @@ def _fit_kernel(layout: MomentLayout) -> Any:
         span: wp.array(dtype=wp.vec2i),
         # In:
         sides: wp.array(dtype=wp.vec3i),
-        color_sums: wp.array2d(dtype=color_type),
-        area_sums: wp.array2d(dtype=area_type),
+        color_sums: wp.array3d(dtype=types.integer),
+        area_sums: wp.array3d(dtype=types.integer),
         gauge: wp.array(dtype=wp.vec3d),
         width: int,
         height: int,
@@ -143,11 +139,10 @@ def _fit_kernel(layout: MomentLayout) -> Any:
                 coefficients_out[triangle, channel, term] = wp.float64(0.0)
             for back in range(wp.static(terms)):
                 i = wp.static(terms - 1) - back
-                if best.lower[i, i] > wp.float64(0.0):
-                    value = best.half[i, channel]
-                    for k in range(i + 1, wp.static(terms)):
-                        value -= best.lower[k, i] * best.half[k, channel]
-                    best.half[i, channel] = value / best.lower[i, i]
+                for k in range(i + 1, wp.static(terms)):
+                    best.half[i, channel] -= (
+                        best.lower[i, i] * best.lower[k, i] * best.half[k, channel]
+                    )
             for n in range(wp.static(len(expansion))):
                 factor = wp.float64(wp.static(float(expansion[n][2])))
                 for _a in range(wp.static(expansion[n][3])):
@@ -180,8 +175,8 @@ def record_fit(
         device: Where to run.
         layout: The polynomial colour and its integers.
         sides: See `record_energies`.
-        color_sums: Colour moments, [E, 1].
-        area_sums: Area moments, [E, 1].
+        color_sums: Colour moments, [E, 4 K, 1].
+        area_sums: Area moments, [E, G, 1].
         gauge: 1 / mean weight, and how far pixels lie from the image's middle along x and along y
             [px], [1] vec3d.
         size: Width and height of the image [px].

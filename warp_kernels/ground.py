@@ -31,18 +31,18 @@ def ground_type(layout: MomentLayout) -> Any:
         """E(T) as it stands [code value^2 px], [T]."""
         sides: wp.array(dtype=wp.vec3i)
         """For each side of a triangle 2 * edge + (1 where the edge runs the other way), [T]."""
-        color_sums: wp.array2d(dtype=types.color)
-        """Colour moments left of every edge as it stands, [E, 1]."""
-        area_sums: wp.array2d(dtype=types.area)
-        """Area moments left of every edge, [E, 1]."""
+        color_sums: wp.array3d(dtype=types.integer)
+        """Colour moments left of every edge as it stands, [E, 4 K, 1]."""
+        area_sums: wp.array3d(dtype=types.integer)
+        """Area moments left of every edge, [E, G, 1]."""
         table: wp.array(dtype=types.entry)
         """Prefix sums of the image, see `image_tables`."""
-        powers: wp.array(dtype=types.powers)
-        """Sums of x^a left of each column, [W + 1]."""
         gauge: wp.array(dtype=wp.vec3d)
         """The scale of energies and the size of the picture, see `fit`, [1]."""
         limits: wp.array(dtype=wp.float64)
         """Smallest height [px] and largest area [px^2] of the triangles that a change makes."""
+        width: int
+        """Columns of the image [px]."""
         height: int
         """Rows of the image [px]."""
 

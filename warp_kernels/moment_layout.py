@@ -77,8 +77,6 @@ class MomentTypes:
     """Vector of 4 K sums: for each term those for red, green, blue, and I^2 or nothing."""
     area: Any
     """Vector of G sums of x^a y^b."""
-    powers: Any
-    """Vector of 2 d + 1 int64: sums of x^a over the pixels left of a column."""
 
 
 @cache
@@ -92,5 +90,4 @@ def moment_types(layout: MomentLayout) -> MomentTypes:
         entry=wp.types.vector(length=ENTRY, dtype=word),
         color=wp.types.vector(length=4 * model.term_count, dtype=integer),
         area=wp.types.vector(length=model.area_count, dtype=integer),
-        powers=wp.types.vector(length=2 * model.degree + 1, dtype=wp.int64),
     )

@@ -1,82 +1,19 @@
-"""What is summed: the moments of one pixel, and of everything left of a column in one row.
+"""What is summed: the moments of one pixel.
 
-Both ways to sum (`edge_moments`, `fragments`) take their terms from here, so they cannot differ.
 `check_size` refuses an image whose sums could leave their integers.
 """
 
 from functools import cache
 from typing import Any
 
-import numpy as np
 import warp as wp
 
-from warp_kernels.color_model import SQUARE, ColorModel
+from warp_kernels.color_model import SQUARE
 from warp_kernels.errors import OptionError
-from warp_kernels.moment_layout import ENTRY, MomentLayout, moment_types
+from warp_kernels.moment_layout import MomentLayout, moment_types
 from warp_kernels.raster import MAX_SIDE
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
-
-
-@cache
-def color_sums_left_of(layout: MomentLayout) -> Any:
-    """A wp.func: the colour moments of all pixels of a row left of a column.
-
-    It reads the prefix table (see `image_tables`) at `entry`, the place of that row and column,
-    and multiplies by the powers of `y`, the row's number from the image's middle.
-    """
-    types = moment_types(layout)
-    sums, entry_type, integer = types.color, types.entry, types.integer
-    exponents = layout.model.exponents
-
-    @wp.func
-    def color_sums(table: wp.array(dtype=entry_type), entry: int, y: wp.int64) -> sums:
-        """Each entry times the powers of y; the fourth component holds a colour only once."""
-        total = sums()
-        for term in range(wp.static(len(exponents))):
-            left = table[entry + wp.static(exponents[term][0])]
-            factor = integer(1)
-            for _b in range(wp.static(exponents[term][1])):
-                factor *= integer(y)
-            for channel in range(3):
-                total[4 * term + channel] = factor * integer(left[channel])
-            if wp.static(term == 0):
-                total[wp.static(SQUARE)] = integer(left[wp.static(SQUARE)])
-        return total
-
-    return color_sums
-
-
-@cache
-def area_sums_left_of(layout: MomentLayout) -> Any:
-    """A wp.func: the area moments of all pixels of a row left of a column.
-
-    They come from the prefix table as in `color_sums_left_of`, or in the narrow layout from
-    `powers`, the sums of x^a left of that column (see `column_powers`).
-    """
-    types = moment_types(layout)
-    sums, entry_type, powers_type, integer = types.area, types.entry, types.powers, types.integer
-    exponents = layout.model.area_exponents
-    area_words = layout.area_words
-    wide = layout.wide
-
-    @wp.func
-    def area_sums(
-        table: wp.array(dtype=entry_type), entry: int, powers: powers_type, y: wp.int64
-    ) -> sums:
-        """The sums of x^a, times the powers of y."""
-        total = sums()
-        for term in range(wp.static(len(exponents))):
-            if wp.static(wide):
-                found = table[entry + wp.static(area_words[exponents[term][0]] // ENTRY)]
-                total[term] = found[wp.static(area_words[exponents[term][0]] % ENTRY)]
-            else:
-                total[term] = powers[wp.static(exponents[term][0])]
-            for _b in range(wp.static(exponents[term][1])):
-                total[term] = total[term] * integer(y)
-        return total
-
-    return area_sums
 
 
 @cache
@@ -127,19 +64,6 @@ def area_sums_of_pixel(layout: MomentLayout) -> Any:
         return total
 
     return area_sums
-
-
-def column_powers(width: int, model: ColorModel) -> np.ndarray:
-    """Sums of x^a over the pixels left of every column, x counted from the image's middle.
-
-    Returns:
-        Shape [W + 1, 2 d + 1] int64.
-    """
-    x = np.arange(width, dtype=np.int64) - width // 2
-    sums = np.zeros((width + 1, 2 * model.degree + 1), dtype=np.int64)
-    for power in range(2 * model.degree + 1):
-        np.cumsum(x**power, out=sums[1:, power])
-    return sums
 
 
 def check_size(width: int, height: int) -> None:

@@ -21,8 +21,10 @@ _UNIT = wp.constant(SUBPIXELS)
 _HALF = wp.constant(HALF)
 _INVERSE_UNIT = wp.constant(1.0 / SUBPIXELS)
 
-_FRACTION_BITS = wp.constant(wp.int64(46))
-_POSITION_UNIT = wp.constant(2.0**46)
+FRACTION_BITS = 46
+"""Of a walk's position, see `EdgeWalk`."""
+_FRACTION_BITS = wp.constant(wp.int64(FRACTION_BITS))
+_POSITION_UNIT = wp.constant(2.0**FRACTION_BITS)
 _FARTHEST = wp.constant(2.0 * MAX_SIDE)
 
 

@@ -23,7 +23,7 @@ def color_adder(layout: MomentLayout) -> Any:
     """A wp.func: add the colours left of a column to the running sums of a walk."""
     types = moment_types(layout)
     color_type, integer, word = types.color, types.integer, types.word
-    steps = _running_order(layout.model.exponents)
+    steps = running_order(layout.model.exponents)
     words = ENTRY * layout.depth * BLOCK_ROWS
 
     # the prefix table comes as plain integers: four of them are widened by one instruction
@@ -50,7 +50,7 @@ def area_adder(layout: MomentLayout) -> Any:
     """A wp.func: add the area left of a column to the running sums of a walk."""
     types = moment_types(layout)
     area_type, word = types.area, types.word
-    steps = _running_order(layout.model.area_exponents)
+    steps = running_order(layout.model.area_exponents)
     area_words = layout.area_words
     words = ENTRY * layout.depth * BLOCK_ROWS
     wide = layout.wide
@@ -213,7 +213,7 @@ def sum_left_of(a: int, c: wp.int64, c_2: wp.int64, c_3: wp.int64, middle: wp.in
     return squares - middle * (c_2 - c - middle * c)
 
 
-def _running_order(exponents: tuple[tuple[int, int], ...]) -> tuple[tuple[int, int, int], ...]:
+def running_order(exponents: tuple[tuple[int, int], ...]) -> tuple[tuple[int, int, int], ...]:
     """In which order the running sums of x^a y^b grow, a lower b before a higher one.
 
     Returns:

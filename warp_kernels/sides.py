@@ -18,21 +18,29 @@ def side_sums(layout: MomentLayout) -> tuple[Any, Any]:
 
     # (n ^ -1) + 1 is -n: a product of 64-bit integers would cost several times more
     @wp.func
-    def side_color(sums: wp.array2d(dtype=color_type), side: int, version: int) -> color_type:
-        """Colour moments with the sign of the side."""
-        color = sums[side >> 1, version]
+    def signed_moment(sums: wp.array3d(dtype=integer), side: int, n: int, version: int) -> integer:
+        """One moment of an edge with the sign of the side."""
+        versions = sums.shape[2]
+        first = wp.uint64(((side >> 1) * sums.shape[1] + n) * versions)
+        # a plain array: its stride is known, so versions that follow each other are read at once
+        moment = wp.array(ptr=sums.ptr + first * wp.uint64(8), shape=(versions,), dtype=integer)
         reversed_edge = integer(side & 1)
+        return (moment[version] ^ -reversed_edge) + reversed_edge
+
+    @wp.func
+    def side_color(sums: wp.array3d(dtype=integer), side: int, version: int) -> color_type:
+        """Colour moments with the sign of the side."""
+        color = color_type()
         for n in range(wp.static(4 * model.term_count)):
-            color[n] = (color[n] ^ -reversed_edge) + reversed_edge
+            color[n] = signed_moment(sums, side, n, version)
         return color
 
     @wp.func
-    def side_area(sums: wp.array2d(dtype=area_type), side: int, version: int) -> area_type:
+    def side_area(sums: wp.array3d(dtype=integer), side: int, version: int) -> area_type:
         """Area moments with the sign of the side."""
-        area = sums[side >> 1, version]
-        reversed_edge = integer(side & 1)
+        area = area_type()
         for n in range(wp.static(model.area_count)):
-            area[n] = (area[n] ^ -reversed_edge) + reversed_edge
+            area[n] = signed_moment(sums, side, n, version)
         return area
 
     return side_color, side_area

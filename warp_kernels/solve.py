@@ -13,7 +13,7 @@ from warp_kernels.device import Device, Phase
 from warp_kernels.fit import fit_moments
 from warp_kernels.moment_layout import MomentLayout, moment_types
 from warp_kernels.sides import side_sums
-from warp_kernels.variants import TRIANGLE_VARIANTS, edge_version
+from warp_kernels.variants import DIRECTIONS, TRIANGLE_VARIANTS, first_version
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 
@@ -27,11 +27,8 @@ SUMS = ("edges", "fragments")
 @cache
 def _edge_energy_kernel(layout: MomentLayout) -> Any:
     types = moment_types(layout)
-    color_type, area_type = types.color, types.area
     side_color, side_area = side_sums(layout)
     fit = fit_moments(layout)
-
-    energies_type = wp.types.vector(length=TRIANGLE_VARIANTS, dtype=wp.float64)
 
     @wp.kernel(enable_backward=False, module="unique")
     def solve_variants(
@@ -40,13 +37,13 @@ def _edge_energy_kernel(layout: MomentLayout) -> Any:
         triangles: wp.array(dtype=wp.vec3i),
         moved: wp.array(dtype=int),
         sides: wp.array(dtype=wp.vec3i),
-        color_sums: wp.array2d(dtype=color_type),
-        area_sums: wp.array2d(dtype=area_type),
+        color_sums: wp.array3d(dtype=types.integer),
+        area_sums: wp.array3d(dtype=types.integer),
         gauge: wp.array(dtype=wp.vec3d),
         # Out:
         energies_out: wp.array2d(dtype=wp.float64),
     ):
-        """Solve the variants of one triangle, in a loop that LLVM runs four at a time."""
+        """Solve the variants of one triangle, those that move one corner side by side."""
         triangle = span[0][0] + wp.tid()
         if triangle >= span[0][1]:
             return
@@ -54,19 +51,30 @@ def _edge_energy_kernel(layout: MomentLayout) -> Any:
         if moved[corners[0]] + moved[corners[1]] + moved[corners[2]] == 0:
             return  # the energies of a triangle at rest still stand
         side = sides[triangle]
-        energies = energies_type()
-        variant = int(0)
-        while variant < wp.static(TRIANGLE_VARIANTS):
-            color = color_type()
-            area = area_type()
-            for n in range(3):
-                version = edge_version(variant, n, side[n] & 1)
-                color += side_color(color_sums, side[n], version)
-                area += side_area(area_sums, side[n], version)
-            energies[variant] = fit(color, area, gauge[0]).energy
-            variant += 1
-        for n in range(wp.static(TRIANGLE_VARIANTS)):
-            energies_out[triangle, n] = energies[n]
+        color = side_color(color_sums, side[0], 0) + side_color(color_sums, side[1], 0)
+        area = side_area(area_sums, side[0], 0) + side_area(area_sums, side[1], 0)
+        color += side_color(color_sums, side[2], 0)
+        area += side_area(area_sums, side[2], 0)
+        energies_out[triangle, 0] = fit(color, area, gauge[0]).energy
+        for corner in range(3):
+            after = side[corner]
+            before = side[(corner + 2) % 3]
+            across = side[(corner + 1) % 3]
+            still_color = side_color(color_sums, across, 0)
+            still_area = side_area(area_sums, across, 0)
+            first = first_version(0, after & 1)
+            last = first_version(1, before & 1)
+            energies = wp.vec4d()
+            direction = int(0)
+            while direction < wp.static(DIRECTIONS):  # LLVM does all four at a time
+                color = still_color + side_color(color_sums, after, first + direction)
+                area = still_area + side_area(area_sums, after, first + direction)
+                color += side_color(color_sums, before, last + direction)
+                area += side_area(area_sums, before, last + direction)
+                energies[direction] = fit(color, area, gauge[0]).energy
+                direction += 1
+            for n in range(wp.static(DIRECTIONS)):
+                energies_out[triangle, 1 + wp.static(DIRECTIONS) * corner + n] = energies[n]
 
     return solve_variants
 
@@ -123,7 +131,7 @@ def record_energies(
             of a triangle at rest are left as they are.
         sides: For each side c of a triangle 2 * edge + (1 where the edge runs the other way),
             [T] vec3i. Not read with "fragments".
-        color_sums: [E, 9] with "edges", [T, 13] with "fragments".
+        color_sums: [E, 4 K, 9] integers with "edges", [T, 13] vectors with "fragments".
         area_sums: As `color_sums`.
         gauge: The scale of energies and the size of the picture, see `fit`, [1] vec3d.
         energies_out: E(T) [code value^2 px], [T, 13].

@@ -91,9 +91,8 @@ class Survey:
         ground.color_sums = workspace.fit_color_sums
         ground.area_sums = workspace.fit_area_sums
         ground.table = workspace.table
-        ground.powers = workspace.powers
         ground.gauge = workspace.gauge
         ground.limits = self._limits
-        ground.height = workspace.size[1]
+        ground.width, ground.height = workspace.size
         outputs = [self._changes, self._points] if change == "split" else [self._changes]
         return record_changes(workspace.device, workspace.layout, change, ground, outputs)

@@ -11,10 +11,9 @@ import warp as wp
 
 from warp_kernels.fit import fit_moments
 from warp_kernels.ground import ground_type
-from warp_kernels.image_tables import table_entry
+from warp_kernels.line_moments import line_moments
 from warp_kernels.moment_layout import MomentLayout, moment_types
-from warp_kernels.moments import area_sums_left_of, color_sums_left_of
-from warp_kernels.raster import column_of, to_fixed, walk_edge
+from warp_kernels.raster import to_fixed
 from warp_kernels.sides import side_sums
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
@@ -31,58 +30,32 @@ def line_sums(layout: MomentLayout) -> tuple[Any, Any, Any]:
         the other way.
     """
     ground_struct = ground_type(layout)
-    types = moment_types(layout)
-    color_type, area_type, integer = types.color, types.area, types.integer
-    color_sums = color_sums_left_of(layout)
-    area_sums = area_sums_left_of(layout)
-    depth = layout.depth
+    integer = moment_types(layout).integer
+    line_struct, left_of = line_moments(layout)
     fit = fit_moments(layout)
     side_color, side_area = side_sums(layout)
 
-    @wp.struct
-    class Line:
-        """Sums of everything left of a line."""
-
-        color: color_type
-        area: area_type
-
     @wp.func
-    def along(tail: wp.vec2d, head: wp.vec2d, ground: ground_struct) -> Line:
+    def along(tail: wp.vec2d, head: wp.vec2d, ground: ground_struct) -> line_struct:
         """Walk down the rows that a line crosses."""
-        width = ground.powers.shape[0] - 1
-        color = color_type()
-        area = area_type()
-        walk = walk_edge(to_fixed(tail), to_fixed(head), ground.height)
-        row = walk.row_begin
-        while row < walk.row_end:
-            column = wp.clamp(column_of(walk.position), 0, width)
-            y = wp.int64(row - ground.height / 2)
-            entry = table_entry(row, column, width, wp.static(depth))
-            color += color_sums(ground.table, entry, y)
-            area += area_sums(ground.table, entry, ground.powers[column], y)
-            walk.position += walk.step
-            row += 1
-        line = Line()
-        line.color = integer(walk.sign) * color
-        line.area = integer(walk.sign) * area
-        return line
+        return left_of(to_fixed(tail), to_fixed(head), ground.table, ground.width, ground.height)
 
     @wp.func
-    def known(half_edge: int, ground: ground_struct) -> Line:
+    def known(half_edge: int, ground: ground_struct) -> line_struct:
         """Read the sums of an edge of the mesh, seen from one of its half-edges."""
         side = ground.sides[half_edge / 3][half_edge % 3]
-        line = Line()
+        line = line_struct()
         line.color = side_color(ground.color_sums, side, 0)
         line.area = side_area(ground.area_sums, side, 0)
         return line
 
     @wp.func
     def energy(
-        ab: Line,
+        ab: line_struct,
         ab_sign: int,
-        bc: Line,
+        bc: line_struct,
         bc_sign: int,
-        ca: Line,
+        ca: line_struct,
         ca_sign: int,
         ground: ground_struct,
     ) -> wp.float64:

@@ -35,15 +35,9 @@ def end_displacement(version: int, end: int, delta: int) -> wp.vec2i:
 
 
 @wp.func
-def edge_version(variant: int, side: int, reversed_edge: int) -> int:
-    """Version of the edge on `side` of a triangle that the triangle's variant reads.
+def first_version(end: int, reversed_edge: int) -> int:
+    """The first of the versions in which one end of a triangle's side moves, 0 or 1.
 
-    Side c runs from corner c to corner c + 1. `reversed_edge` is 1 where the stored edge runs
-    the other way than the side. Without a branch.
+    `reversed_edge` is 1 where the stored edge runs the other way than the side.
     """
-    corner = (variant + 3) / wp.static(DIRECTIONS) - 1  # -1 for the triangle itself
-    direction = (variant + 3) & wp.static(DIRECTIONS - 1)
-    first = wp.where(corner == side, 1, 0)
-    second = wp.where(corner == (side + 1) % 3, 1, 0)
-    version = 1 + wp.static(DIRECTIONS) * (second ^ reversed_edge) + direction
-    return (first + second) * version
+    return 1 + wp.static(DIRECTIONS) * (end ^ reversed_edge)

@@ -17,7 +17,7 @@ from warp_kernels.fit import record_fit
 from warp_kernels.fragments import record_fragment_moments
 from warp_kernels.image_tables import record_image_tables, table_length
 from warp_kernels.moment_layout import layout_of_moments, moment_types
-from warp_kernels.moments import check_size, column_powers
+from warp_kernels.moments import check_size
 from warp_kernels.pixel_weights import reduced_weights
 from warp_kernels.raster import SUBPIXELS
 from warp_kernels.solve import record_energies
@@ -67,7 +67,6 @@ class Workspace:
         self.gauge = self._empty(1, wp.vec3d)
         self._load_weights(None)
         self.table = self._empty(table_length(width, height, self.layout), types.entry)
-        self.powers = wp.array(column_powers(width, model), dtype=types.powers, device=device.warp)
         self._controls = self._empty(3, wp.float64)
         self._probe = self._empty(1, wp.int32)
         self._displacement = 0.0
@@ -217,7 +216,7 @@ class Workspace:
         return float(self.device.read(self._energies, self._counts[1])[:, 0].sum())
 
     def moments(self) -> tuple[np.ndarray, np.ndarray]:
-        """Colour and area sums as they stand: [E, 9, .] with edges, [T, 13, .] with fragments.
+        """Colour and area sums as they stand: [E, ., 9] with edges, [T, 13, .] with fragments.
 
         int64; in the wide layout the highest powers modulo 2^64.
         """
@@ -263,9 +262,6 @@ class Workspace:
         self.generation += 1
         edges = vertices + triangles + 1  # Euler: E = V + T - 1 in a disc
         types = moment_types(self.layout)
-        rows = (edges, EDGE_VERSIONS)
-        if self.sums == "fragments":
-            rows = (triangles, TRIANGLE_VARIANTS)
         self._vertices = (self._empty(vertices, wp.vec2d), self._empty(vertices, wp.vec2d))
         self.triangles = self._empty(triangles, wp.vec3i)
         self._edges = self._empty(edges, wp.vec2i)
@@ -276,20 +272,25 @@ class Workspace:
         self._anchors = self._empty(vertices, wp.vec3d)
         self._memory = self._empty(vertices, wp.vec4d)
         self._moved = self._empty(vertices, wp.int32)
-        self._color_sums = self._empty(rows, types.color)
-        self._area_sums = self._empty(rows, types.area)
+        if self.sums == "fragments":
+            self._color_sums = self._empty((triangles, TRIANGLE_VARIANTS), types.color)
+            self._area_sums = self._empty((triangles, TRIANGLE_VARIANTS), types.area)
+        else:
+            self._color_sums, self._area_sums = self._edge_sums(edges, EDGE_VERSIONS)
         self._energies = self._empty((triangles, TRIANGLE_VARIANTS), wp.float64)
-        self.fit_color_sums = self._empty((edges, 1), types.color)
-        self.fit_area_sums = self._empty((edges, 1), types.area)
+        self.fit_color_sums, self.fit_area_sums = self._edge_sums(edges, 1)
         self._coefficients = self._empty((triangles, 3, self.model.term_count), wp.float64)
         self.fit_energies = self._empty(triangles, wp.float64)
         self._fit_counts = self._empty(triangles, wp.int64)
-        self._record()
-
-    def _record(self) -> None:
-        """Record every launch anew: the arrays have moved."""
-        self._record_iteration()
+        self._record_iteration()  # the arrays have moved
         self._record_fit()
+
+    def _edge_sums(self, edges: int, versions: int) -> tuple[wp.array, wp.array]:
+        """Arrays for the colour and area moments of edges."""
+        integer = moment_types(self.layout).integer
+        counts = (4 * self.model.term_count, self.model.area_count)
+        color, area = (self._empty((edges, count, versions), integer) for count in counts)
+        return color, area
 
     def _record_iteration(self) -> None:
         """Moments, energies and steps; steps go to and fro between two arrays of vertices."""

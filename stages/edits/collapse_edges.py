@@ -32,13 +32,18 @@ def collapsible(
     """
     half_edges = np.asarray(half_edges, dtype=np.int64)
     origins, destinations = edge_ends(mesh, half_edges, reverse)
-    across, along = mesh.on_left_right[origins], mesh.on_top_bottom[origins]
-    on_border_edge = mesh.twins[half_edges] < 0
-    allowed = ~(across & along) & (~(across | along) | on_border_edge)
+    allowed = keeps_border(mesh, half_edges, origins)
     edits, _, heights = collapsed_heights(mesh, origins, destinations)
     kept = (heights > 0) & (heights >= np.broadcast_to(min_height, len(half_edges))[edits])
     allowed[edits[~kept]] = False
     return allowed
+
+
+def keeps_border(mesh: Mesh, half_edges: np.ndarray, origins: np.ndarray) -> np.ndarray:
+    """Whether the border stays as it is when `origins` vanish along half-edges, shape [N] bool."""
+    across, along = mesh.on_left_right[origins], mesh.on_top_bottom[origins]
+    on_border_edge = mesh.twins[half_edges] < 0
+    return ~(across & along) & (~(across | along) | on_border_edge)
 
 
 def collapsed_heights(

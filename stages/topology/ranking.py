@@ -3,13 +3,16 @@
 import numpy as np
 
 from stages.appraise import Appraiser
-from stages.edits import collapsible, flippable
+from stages.edits.collapse_edges import keeps_border
 from stages.mesh import Mesh
+from warp_kernels.topology_gains import IMPOSSIBLE
 
 LEAST_GAIN = 1.0
 """Changes that save less than this are rounding [code value^2 px]."""
 EXAMINED = 8
 """Candidates measured for each one wanted: some are illegal or touch each other."""
+BARRED = 0.5 * IMPOSSIBLE
+"""From this on a cost says that a collapse is none [code value^2 px]."""
 LEAST_EXAMINED = 100
 """Splits measured at least: where few are wanted all of eight may touch other changes."""
 
@@ -31,8 +34,7 @@ def ranked_flips(
     before = energies[edges // 3] + energies[np.maximum(mesh.twins[edges], 0) // 3]
     wanted = gains > np.maximum(least_share * before, max(floor, LEAST_GAIN))
     edges, gains = edges[wanted], gains[wanted]
-    edges = edges[np.argsort(-gains, kind="stable")]
-    return edges[flippable(mesh, edges)]
+    return edges[np.argsort(-gains, kind="stable")]
 
 
 def ranked_splits(
@@ -81,14 +83,13 @@ def ranked_collapses(mesh: Mesh, appraiser: Appraiser, most: int) -> tuple[np.nd
     chosen = np.zeros(mesh.vertex_count, dtype=bool)
     chosen[likely] = True
     origins = mesh.triangles.reshape(-1)
-    on_border = (mesh.on_left_right | mesh.on_top_bottom)[origins]
-    half_edges = np.flatnonzero(chosen[origins] & (~on_border | (mesh.twins < 0)))
-    lost = np.where(mesh.twins[half_edges] >= 0, 2, 1)
-    costs = appraiser.collapse_costs(half_edges) / lost
+    half_edges = np.flatnonzero(chosen[origins])
+    half_edges = half_edges[keeps_border(mesh, half_edges, origins[half_edges])]
+    costs = appraiser.collapse_costs(half_edges)
+    half_edges, costs = half_edges[costs < BARRED], costs[costs < BARRED]
+    costs /= np.where(mesh.twins[half_edges] >= 0, 2, 1)
     order = np.argsort(costs, kind="stable")[: EXAMINED * most]
-    half_edges, costs = half_edges[order], costs[order]
-    legal = collapsible(mesh, half_edges)
-    return half_edges[legal], costs[legal]
+    return half_edges[order], costs[order]
 
 
 def _spread(mesh: Mesh, appraiser: Appraiser) -> np.ndarray:
