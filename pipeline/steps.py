@@ -12,7 +12,7 @@ from pathlib import Path
 
 from pipeline.job import Job
 from pipeline.shots import AHEAD, ShotFrame, read_cuts
-from stages.flows import Passage
+from stages.flows.passage import Passage
 from stages.frame import Frame
 from stages.media import Decoder, FrameRange, MediaInfo, count_frames, open_decoder
 from warp_kernels.errors import MediaError

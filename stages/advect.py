@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from stages.cover import collapse_covered
-from stages.flows import Passage
+from stages.flows.passage import Passage
 from stages.mesh import Mesh, heights_of
 
 LOWEST = 0.25

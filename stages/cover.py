@@ -14,9 +14,7 @@ LEAST_HELP = 1e-9
 """A collapse must lessen what is missing by more than this, which is rounding [px]."""
 
 
-def collapse_covered(
-    mesh: Mesh, steps: np.ndarray, least_height: float
-) -> tuple[Mesh, np.ndarray]:
+def collapse_covered(mesh: Mesh, steps: np.ndarray, least_height: float) -> tuple[Mesh, np.ndarray]:
     """Collapse triangles that motion turns over: one thing has slid over another there.
 
     What the triangles around a vertex lack to their least height is taken together; edges

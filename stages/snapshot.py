@@ -1,11 +1,12 @@
 """The finished triangulation of one frame: a mesh and the colours that fit it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import comb
 
 import numpy as np
 
+from stages.frame import Frame
 from stages.mesh import Mesh
 from warp_kernels.color_model import CHANNELS, ColorModel
 
@@ -43,6 +44,10 @@ class Snapshot:
         """
         samples = CHANNELS * self.mesh.width * self.mesh.height
         return float(np.sqrt(2.0 * self.energies.sum() / samples))
+
+    def again(self, frame: Frame) -> "Snapshot":
+        """The same for a later frame of the same picture."""
+        return replace(self, frame_index=frame.index, pts=frame.pts, time_base=frame.time_base)
 
 
 def colors_at_centres(mesh: Mesh, model: ColorModel, coefficients: np.ndarray) -> np.ndarray:

@@ -18,10 +18,10 @@ from pipeline.animate import Animated, animate
 from pipeline.job import Job
 from pipeline.progress import Progress
 from sample_videos.make_shapes import CUT_FRAME, FRAME_COUNT
+from stages.advect import Carried
 from stages.frame import Frame
 from stages.layouts import Layout
 from stages.media import FrameRange, open_decoder
-from stages.mesh import Mesh
 from stages.refine import RefineOptions
 from stages.snapshot import Snapshot
 from stages.triangulate import TriangulateOptions, Triangulator
@@ -47,7 +47,7 @@ class RecordingTriangulator(Triangulator):
         self.snapshots.append(super().first(frame, layout, rng))
         return self.snapshots[-1]
 
-    def next(self, frame: Frame, seed: Mesh) -> Snapshot:
+    def next(self, frame: Frame, seed: Carried) -> Snapshot:
         """Triangulate a later frame and keep the result."""
         self.snapshots.append(super().next(frame, seed))
         return self.snapshots[-1]

@@ -5,7 +5,9 @@ from functools import lru_cache
 import numpy as np
 import pytest
 
+from stages.advect import Carried
 from stages.layouts import LAYOUTS
+from stages.mesh import Mesh
 from stages.refine import RefineOptions
 from stages.snapshot import Snapshot
 from stages.topology import TOPOLOGIES
@@ -24,6 +26,11 @@ def options(triangles: int = 120, error: float | None = None, **others) -> Trian
     """Few iterations, so that tests are quick."""
     refine = RefineOptions(triangles=triangles, error=error)
     return TriangulateOptions(**{"iterations": ITERATIONS, "refine": refine, **others})
+
+
+def standing(mesh: Mesh) -> Carried:
+    """A mesh that no motion has moved."""
+    return Carried(mesh, np.ones(mesh.vertex_count))
 
 
 def triangulated(

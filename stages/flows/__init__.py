@@ -12,7 +12,6 @@ import numpy as np
 from stages.flows.dis import Dis
 from stages.flows.field import FlowField
 from stages.flows.none import NoFlow
-from stages.flows.passage import Passage
 
 
 class Flow(Protocol):

@@ -95,10 +95,15 @@ def _misfits(
 
 def _sampled(picture: np.ndarray, places: np.ndarray) -> np.ndarray:
     """A picture at places [N, P, 2], bilinear and continued beyond its border; [N, P] uint8."""
+    x, y = np.ascontiguousarray(np.moveaxis(places, 2, 0))
     parts = [
         cv2.remap(
-            picture, part, None, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE
+            picture,
+            x[begin : begin + MOST_ROWS],
+            y[begin : begin + MOST_ROWS],
+            cv2.INTER_LINEAR,
+            borderMode=cv2.BORDER_REPLICATE,
         )
-        for part in np.split(places, range(MOST_ROWS, len(places), MOST_ROWS))
+        for begin in range(0, len(places), MOST_ROWS)
     ]
     return np.concatenate(parts)

@@ -17,9 +17,7 @@ LEAST_EXAMINED = 100
 """Splits measured at least: where few are wanted all of eight may touch other changes."""
 
 
-def ranked_flips(
-    mesh: Mesh, appraiser: Appraiser, least_share: float, floor: float
-) -> np.ndarray:
+def ranked_flips(mesh: Mesh, appraiser: Appraiser, least_share: float, floor: float) -> np.ndarray:
     """Edges of the measured mesh whose flip pays.
 
     Args:
