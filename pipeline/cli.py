@@ -161,7 +161,8 @@ def run_measure(arguments: argparse.Namespace) -> None:
 
     track = None if arguments.track is None else Path(arguments.track)
     wanted = frame_range(vars(arguments))
-    report = measure(Path(arguments.source), Path(arguments.output), wanted, track)
+    with _progress(arguments) as progress:
+        report = measure(Path(arguments.source), Path(arguments.output), wanted, track, progress)
     print(report.as_json() if arguments.json else report.as_table())
 
 

@@ -1,13 +1,17 @@
 """How coherently an output follows its source: pictures of a few frames at a time."""
 
+import os
 from collections import deque
 from collections.abc import Iterable, Mapping
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
 
 from pipeline.matched import Matched
 from stages.metrics import Motion, motion_difference, warp_error
+
+_Pictures = tuple[np.ndarray, np.ndarray]
 
 LAGS = (1, 4)
 """How many frames apart the pictures are that are compared."""
@@ -46,20 +50,19 @@ class CoherenceMeter:
             pair: The frame and what became of it.
             shot: Number of the frame with which its shot begins.
         """
-        errors: dict[int, float | None] = {}
-        own: dict[int, float | None] = {}
-        self.motion = None
-        for lag in LAGS:
-            before = self._before(lag, shot)
-            errors[lag] = own[lag] = None
-            if before is not None:
-                motion = Motion.between(before.frame.pixels, pair.frame.pixels)
-                errors[lag] = warp_error(before.shown, pair.shown, motion)
-                own[lag] = warp_error(before.frame.pixels, pair.frame.pixels, motion)
-                self.motion = motion if lag == 1 else self.motion
-        difference = _motion_difference(self._before(1, shot), pair)
+        lags = {lag: before for lag in LAGS if (before := self._before(lag, shot)) is not None}
+        # OpenCV works without the interpreter's lock.
+        with ThreadPoolExecutor(os.cpu_count()) as pool:
+            compared = {lag: pool.submit(_compared, lags[lag], pair) for lag in lags}
+            difference = pool.submit(motion_difference, *_steps(lags[1], pair)) if lags else None
+        found = {lag: future.result() for lag, future in compared.items()}
+        self.motion = found[1].motion if found else None
         self._earlier.append((pair, shot))
-        return Coherence(errors, own, difference)
+        return Coherence(
+            {lag: found[lag].error if lag in found else None for lag in LAGS},
+            {lag: found[lag].own if lag in found else None for lag in LAGS},
+            None if difference is None else difference.result(),
+        )
 
     def _before(self, lag: int, shot: int) -> Matched | None:
         """The frame of the same shot so many frames ago."""
@@ -84,8 +87,24 @@ def mean_of(values: Iterable[float | None]) -> float | None:
     return float(np.mean(known)) if known else None
 
 
-def _motion_difference(before: Matched | None, pair: Matched) -> float | None:
-    if before is None:
-        return None
-    source = before.frame.pixels, pair.frame.pixels
-    return motion_difference(source, (before.shown, pair.shown))
+@dataclass(frozen=True, eq=False)
+class _Compared:
+    """Two frames of a shot."""
+
+    motion: Motion
+    """How the source moves from one to the other."""
+    error: float | None
+    """E_warp of the output."""
+    own: float | None
+    """E_warp of the source."""
+
+
+def _compared(before: Matched, after: Matched) -> _Compared:
+    source, output = _steps(before, after)
+    motion = Motion.between(*source)
+    return _Compared(motion, warp_error(*output, motion), warp_error(*source, motion))
+
+
+def _steps(before: Matched, after: Matched) -> tuple[_Pictures, _Pictures]:
+    """Two pictures of the source, and of the output."""
+    return (before.frame.pixels, after.frame.pixels), (before.shown, after.shown)

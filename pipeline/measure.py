@@ -1,11 +1,12 @@
 """Compare an output with its source, frame by frame; keeps only a few frames."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import nullcontext
 from pathlib import Path
 
 from pipeline.coherence import CoherenceMeter
 from pipeline.matched import Matched, is_padded, matched, size_notes, size_of, with_detected_shots
+from pipeline.progress import Progress
 from pipeline.report import FrameFigures, Report, squared_error
 from pipeline.track import TrackReader
 from pipeline.track_measures import TrackMeter
@@ -13,7 +14,11 @@ from stages.media import FrameRange, open_decoder
 
 
 def measure(
-    source: Path, output: Path, frame_range: FrameRange, track: Path | None = None
+    source: Path,
+    output: Path,
+    frame_range: FrameRange,
+    track: Path | None = None,
+    progress: Progress | None = None,
 ) -> Report:
     """Compare an output with its source.
 
@@ -27,6 +32,7 @@ def measure(
         frame_range: The frames of the source that the output shows.
         track: The mesh track that the output was drawn from, if its meshes are to be measured.
             If the range is the whole source, the track's own range is taken.
+        progress: Told of every frame that is compared.
 
     Raises:
         MediaError: If one of the two cannot be read.
@@ -37,18 +43,23 @@ def measure(
         meter = None if reader is None else TrackMeter(reader, source)
         if reader is not None and frame_range.is_whole:
             frame_range = reader.header.frame_range
-        return _measure(source, output, frame_range, meter)
+        return _measure(source, output, frame_range, meter, progress or Progress())
 
 
 def _measure(
-    source: Path, output: Path, frame_range: FrameRange, meter: TrackMeter | None
+    source: Path,
+    output: Path,
+    frame_range: FrameRange,
+    meter: TrackMeter | None,
+    progress: Progress,
 ) -> Report:
     """Compare what was opened."""
     with open_decoder(source, frame_range) as original, open_decoder(output) as result:
         is_padded(original, result)  # refuses another shape before any frame is decoded
         if meter is not None:
             meter.check_size(original.info)
-        frames = tuple(_figures(matched(original, result), meter))
+        found = _figures(matched(original, result), meter)
+        frames = tuple(_told(found, result.info.frame_count, progress))
         notes = (*size_notes(original, result), *original.warnings, *result.warnings)
         meshes = [frame.mesh for frame in frames if frame.mesh is not None]
         figures = None if meter is None else meter.total(meshes)
@@ -64,6 +75,15 @@ def _figures(pairs: Iterator[Matched], meter: TrackMeter | None) -> Iterator[Fra
         found = coherence.add(pair, shot)
         mesh = None if meter is None else meter.add(number, coherence.motion)
         yield FrameFigures(number, pair.time, error, found, mesh)
+
+
+def _told(
+    frames: Iterable[FrameFigures], total: int | None, progress: Progress
+) -> Iterator[FrameFigures]:
+    """The same figures; each is told of."""
+    for done, figures in enumerate(frames, start=1):
+        progress.compared(done, total, figures.rmse)
+        yield figures
 
 
 def _with_shots(

@@ -188,6 +188,10 @@ def _add_messages(parser: argparse.ArgumentParser) -> None:
         type=text_value,
         help="options from a file, or a shipped one: preview, fine; the command line beats it",
     )
+    _add_telling(group)
+
+
+def _add_telling(group: Any) -> None:
     group.add_argument(
         "--progress",
         choices=CHOICES,
@@ -231,6 +235,7 @@ def _add_measure(commands: Any) -> None:
     )
     parser.add_argument("--json", action="store_true", help="print JSON, with every frame")
     add_range_options(parser)
+    _add_telling(parser.add_argument_group("messages"))
 
 
 def _command(

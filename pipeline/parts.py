@@ -50,21 +50,23 @@ def animate_in_parts(job: Job, progress: Progress) -> Animated:
 
     Args:
         job: What to do.
-        progress: Told of every solved frame, then of every drawn one.
+        progress: Told of the whole: a frame is half done when it is solved, and done when drawn.
 
     Raises:
         TrimotionError: As `animate` does.
     """
     begun = perf_counter()
+    both = _Halves(progress)
     check_drawing(job, probe(job.source))
     if job.track is None and job.resume:
         raise OptionError("--resume: nothing is left to go on with; name a --track FILE.mtrk")
     track = job.track or PendingFile(job.output).path.with_suffix(ENDING)
     try:
-        solved = solve_in_parts(replace(job, track=track), progress)
+        solved = solve_in_parts(replace(job, track=track), both)
         with TrackReader(track) as reader:
             drawn = render_job(job, reader, job.source)
-            result = render(drawn.job, reader, drawn.info, progress)
+            both.second_half()
+            result = render(drawn.job, reader, drawn.info, both)
     finally:
         if job.track is None:
             track.unlink(missing_ok=True)
@@ -117,7 +119,7 @@ class _Crew:
         self, job: Job, ranges: Sequence[FrameRange], folder: Path, progress: Progress
     ) -> None:
         self.done = 0
-        """Frames finished."""
+        """Frames finished by this run."""
         self.notes: dict[str, None] = {}
         """Choices that were made, each once."""
         self.warnings: dict[str, None] = {}
@@ -126,6 +128,7 @@ class _Crew:
         self._left = len(ranges)
         self._total = sum((part.last or 0) - part.first + part.step for part in ranges)
         self._total //= ranges[0].step
+        self._found = sum(_held(_path(folder, part)) for part in ranges)
         context = multiprocessing.get_context("spawn")
         self._tasks: Any = context.Queue()
         self._reports: Any = context.Queue()
@@ -169,7 +172,7 @@ class _Crew:
                 continue
             if kind == "frame":
                 self.done += 1
-                self._progress.frame(self.done, self._total, *values)
+                self._progress.frame(self._found + self.done, self._total, *values)
             elif kind == "error":
                 raise PartError(*values)
             else:
@@ -185,6 +188,27 @@ class _Crew:
                     "and fewer --jobs if memory was short",
                     1,
                 )
+
+
+class _Halves(Progress):
+    """One progress of two passes over the same frames, of which each counts for a half."""
+
+    def __init__(self, whole: Progress) -> None:
+        super().__init__()
+        self._whole = whole
+        self._is_second = False
+        self._told = 0
+
+    def second_half(self) -> None:
+        """The first pass is over."""
+        self._is_second = True
+
+    def frame(self, done: int, total: int | None, triangles: int, rmse: float) -> None:
+        """Tell of a frame whenever two halves are finished."""
+        together = done if total is None or not self._is_second else done + total
+        if together // 2 > self._told:
+            self._told = together // 2
+            self._whole.frame(self._told, total, triangles, rmse)
 
 
 class _Reporter(Progress):
@@ -221,6 +245,14 @@ def _work(job: Job, tasks: Any, reports: Any, parent: int) -> None:
         kind = type(error).__name__
         text = f"internal error ({kind}: {error}); run again with --jobs 1 --debug and report it"
         reports.put(("error", text, 1))
+
+
+def _held(path: Path) -> int:
+    """Frames that an interrupted run left in the track of a part."""
+    if not path.exists():
+        return 0
+    with TrackReader(path) as reader:
+        return len(reader.rows)
 
 
 def _folder(track: Path) -> Path:

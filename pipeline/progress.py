@@ -63,6 +63,15 @@ class Progress:
             rmse: Its error [code values].
         """
 
+    def compared(self, done: int, total: int | None, rmse: float) -> None:
+        """Tell that a frame is compared with its source.
+
+        Args:
+            done: Number of frames compared so far.
+            total: Number of frames in all, None if unknown; may turn out to be wrong.
+            rmse: Its error [code values].
+        """
+
     def note(self, text: str) -> None:
         """Tell a choice that was made, if the user wants to know."""
         if self._verbose:
@@ -104,13 +113,19 @@ class PlainProgress(Progress):
 
     def frame(self, done: int, total: int | None, triangles: int, rmse: float) -> None:
         """Tell about a frame if the last line is old enough, or if it is the last frame."""
+        self._tell(done, total, f"{triangles} triangles  rmse {rmse:.2f}")
+
+    def compared(self, done: int, total: int | None, rmse: float) -> None:
+        """Tell about a frame as often as about others."""
+        self._tell(done, total, f"rmse {rmse:.2f}")
+
+    def _tell(self, done: int, total: int | None, figures: str) -> None:
         now = time.perf_counter()
         if now - self._told < PLAIN_INTERVAL and done != total:
             return
         self._told = now
         goal = "" if total is None else f"/{total}"
-        fps = self._fps(done)
-        self._print(f"frame {done}{goal}  {fps:.1f} fps  {triangles} triangles  rmse {rmse:.2f}")
+        self._print(f"frame {done}{goal}  {self._fps(done):.1f} fps  {figures}")
 
     def finish(self, summary: Summary) -> None:
         """Tell the summary."""
@@ -126,13 +141,20 @@ class BarProgress(Progress):
 
     def frame(self, done: int, total: int | None, triangles: int, rmse: float) -> None:
         """Move the bar."""
+        self._move(done, total, f"{triangles} triangles, rmse {rmse:.2f}")
+
+    def compared(self, done: int, total: int | None, rmse: float) -> None:
+        """Move the bar."""
+        self._move(done, total, f"rmse {rmse:.2f}")
+
+    def _move(self, done: int, total: int | None, figures: str) -> None:
         if self._bar is None:
             from tqdm import tqdm  # only a terminal needs it
 
             self._bar = tqdm(total=total, unit=" frames", file=sys.stderr, dynamic_ncols=True)
         if self._bar.total is not None and done > self._bar.total:
             self._bar.total = None  # the file declared fewer frames than it has
-        self._bar.set_postfix_str(f"{triangles} triangles, rmse {rmse:.2f}", refresh=False)
+        self._bar.set_postfix_str(figures, refresh=False)
         self._bar.update(done - self._bar.n)
 
     def finish(self, summary: Summary) -> None:
@@ -160,6 +182,10 @@ class JsonProgress(Progress):
         """Write a frame's figures."""
         fps = round(self._fps(done), 3)
         self._write("frame", done=done, total=total, fps=fps, triangles=triangles, rmse=rmse)
+
+    def compared(self, done: int, total: int | None, rmse: float) -> None:
+        """Write a frame's error."""
+        self._write("frame", done=done, total=total, fps=round(self._fps(done), 3), rmse=rmse)
 
     def note(self, text: str) -> None:
         """Write a note; programs can tell what they want to know."""

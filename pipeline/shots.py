@@ -6,21 +6,25 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-
 from stages.frame import Frame
-from stages.signature import change, signature
+from stages.metrics import Signature, change, likeness, signature
 from warp_kernels.errors import MediaError, OptionError
 
-AHEAD = 2
-"""Frames looked at on either side of a possible cut."""
-LEAST = 12.0
+FLASH = 3
+"""Longest flash or other interruption after which a shot goes on [frames]."""
+AHEAD = FLASH + 1
+"""Later frames that are looked at before a decision; one more than these of the earlier ones."""
+LEAST = 8.0
 """Smallest change of a hard cut [code values]."""
 RATIO = 3.0
-"""A cut changes the picture this many times more than the steps around it do."""
-LASTING = 0.6
-"""Part of the change that must last: still be there two frames later, as a flash goes away again,
-and be there already two frames before, as the picture after a flash is the one before it."""
+"""A cut changes the picture this many times more than all but one of the steps before it that are
+known, and than all but one of those after it: fades, dissolves and fast motion take several steps
+of equal size. The one may be another cut."""
+ALIKE = 0.7
+"""Pictures of this likeness show the same things, displaced or in another light."""
+CLEAR_RATIO, CLEARLY_ALIKE = 6.0, 0.78
+"""A step so many times larger than others is a cut unless the pictures are as like as that:
+plain pictures are alike by chance, but motion does not begin so suddenly."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -100,11 +104,11 @@ class _Detector:
     """Decides about frames in order, once `AHEAD` later ones are known or the clip ends."""
 
     def __init__(self) -> None:
-        self._signatures: list[np.ndarray] = []
+        self._signatures: list[Signature] = []
         self._next = 0
         self._forgotten = False
 
-    def add(self, description: np.ndarray) -> None:
+    def add(self, description: Signature) -> None:
         """Tell of one more frame."""
         self._signatures.append(description)
 
@@ -124,15 +128,29 @@ class _Detector:
 
     def _is_cut(self, at: int) -> bool:
         known = self._signatures
-        value = change(known[at - 1], known[at])
+        before, after = known[at - 1], known[at]
+        value = change(before, after)
         if value < LEAST:
             return False
-        steps = range(max(1, at - AHEAD), min(len(known), at + AHEAD + 1))
-        around = [change(known[step - 1], known[step]) for step in steps if step != at]
-        if around and value < RATIO * sum(around) / len(around):
+        unrest = self._unrest(at)
+        if value < RATIO * unrest:
             return False
-        later = known[at : at + AHEAD + 1]
-        earlier = known[max(0, at - AHEAD - 1) : at]
-        steps_over = [change(known[at - 1], after) for after in later]
-        steps_over += [change(before, known[at]) for before in earlier]
-        return min(steps_over) >= LASTING * value
+        alike = ALIKE if value < CLEAR_RATIO * unrest else CLEARLY_ALIKE
+        later = known[at : at + 1 + FLASH]
+        earlier = known[max(0, at - 1 - FLASH) : at - 1]
+        return not (_recurs(before, later, alike) or _recurs(after, earlier, alike))
+
+    def _unrest(self, at: int) -> float:
+        """Second largest change before or after a step, whichever is more [code values]."""
+        known = self._signatures
+        sides = (
+            range(max(1, at - AHEAD), at),
+            range(at + 1, min(len(known), at + 1 + AHEAD)),
+        )
+        changes = ([change(known[step - 1], known[step]) for step in side] for side in sides)
+        return max(sorted([0.0, 0.0, *side])[-2] for side in changes)
+
+
+def _recurs(picture: Signature, others: list[Signature], alike: float) -> bool:
+    """Whether a picture is seen again among others: then what lies between interrupts a shot."""
+    return any(likeness(picture, other) >= alike for other in others)

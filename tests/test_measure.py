@@ -169,3 +169,14 @@ def test_resample_keeps_ramps_and_means(rng: np.random.Generator) -> None:
     noise = rng.integers(0, 256, (64, 64, 3), dtype=np.uint8)
     assert resample(noise, (16, 16)).mean() == pytest.approx(noise.mean(), rel=0.02)
     assert resample(noise, (64, 64)) is noise
+
+
+def test_progress_is_told_apart_from_the_figures(tmp_path: Path, capsys) -> None:
+    """Every frame is told of on standard error, where it does not disturb programs."""
+    clip = str(write_clip(tmp_path / "a.mkv", [gray(50)] * 3))
+    assert main(["measure", clip, clip, "--json"]) == 0
+    told = capsys.readouterr()
+    assert "frame 3/3" in told.err
+    assert json.loads(told.out)["frames"] == 3
+    assert main(["measure", clip, clip, "--quiet"]) == 0
+    assert capsys.readouterr().err == ""

@@ -9,7 +9,7 @@ import pytest
 from pipeline.animate import animate
 from pipeline.cli import main
 from pipeline.job import Job
-from pipeline.parts import solve_in_parts
+from pipeline.parts import animate_in_parts, solve_in_parts
 from pipeline.plan import plan
 from pipeline.progress import Progress
 from pipeline.track import TrackReader, join
@@ -58,6 +58,18 @@ class Interrupting(Progress):
         """Interrupt at the frame."""
         if done == self.after:
             raise KeyboardInterrupt
+
+
+class Counting(Progress):
+    """Keeps what it is told."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.told: list[tuple[int, int | None]] = []
+
+    def frame(self, done: int, total: int | None, triangles: int, rmse: float) -> None:
+        """Keep the count."""
+        self.told.append((done, total))
 
 
 def test_rows_tell_frames_and_shots(whole: Path) -> None:
@@ -188,6 +200,14 @@ def test_two_processes_are_one(clip: Path, whole: Path, tmp_path: Path) -> None:
     assert solve_in_parts(job, Progress()).frames == COUNT
     assert rows_of(track) == rows_of(whole)
     assert list(tmp_path.iterdir()) == [track]
+
+
+def test_processes_have_one_progress(clip: Path, tmp_path: Path) -> None:
+    """It counts to the end once, in order, though frames are solved and then drawn."""
+    progress = Counting()
+    job = Job(clip, tmp_path / "o.mkv", triangulate=QUICK, jobs=2, threads=1)
+    animate_in_parts(job, progress)
+    assert progress.told == [(done, COUNT) for done in range(1, COUNT + 1)]
 
 
 def test_animate_goes_on_with_its_track(clip: Path, tmp_path: Path) -> None:

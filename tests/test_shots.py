@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 
 from pipeline.shots import read_cuts, with_shots
-from tests.kernel_samples import frame_of, waves
+from tests.kernel_samples import frame_of, noise, waves
 from warp_kernels.errors import MediaError, OptionError
 
 FIRST = waves(64, 48)
 SECOND = 255 - FIRST[::-1, ::-1]
+DETAILED = np.kron(noise(16, 12), np.ones((6, 6, 1), dtype=np.uint8))
 WHITE = np.full_like(FIRST, 255)
 
 
@@ -43,7 +44,7 @@ def test_two_cuts_near_each_other_are_both_found() -> None:
     assert starts(pictures) == [0, 8, 12]
 
 
-@pytest.mark.parametrize("length", [1, 2])
+@pytest.mark.parametrize("length", [1, 2, 3])
 def test_flash_is_no_cut(length: int) -> None:
     """White frames after which the same shot goes on open nothing, neither coming nor going."""
     assert starts(panned(6) + [WHITE] * length + panned(8)) == [0]
@@ -54,6 +55,41 @@ def test_dissolve_is_no_cut() -> None:
     shares = np.linspace(0, 1, 12)
     between = [((1 - s) * FIRST + s * SECOND).astype(np.uint8) for s in shares]
     assert starts([FIRST] * 5 + between + [SECOND] * 5) == [0]
+
+
+@pytest.mark.parametrize("count", [4, 12])
+def test_fade_through_black_is_no_cut(count: int) -> None:
+    """A picture fades out, and another one in."""
+    shares = np.linspace(0, 1, count, endpoint=False)[1:]
+    out = [(FIRST * (1 - share)).astype(np.uint8) for share in shares]
+    into = [(SECOND * share).astype(np.uint8) for share in shares]
+    black = [np.zeros_like(FIRST)] * 3
+    assert starts([FIRST] * 5 + out + black + into + [SECOND] * 5) == [0]
+
+
+@pytest.mark.parametrize("step", [8, 16])
+def test_fast_pan_is_no_cut(step: int) -> None:
+    """Neither its sudden start nor its end: the picture is the same, elsewhere."""
+    moved = [np.roll(DETAILED, number * step, axis=1) for number in range(6)]
+    assert starts([moved[0]] * 6 + moved + [moved[-1]] * 6) == [0]
+
+
+def test_motion_of_repeated_frames_is_no_cut() -> None:
+    """Ten pictures a second, each shown three times: every third step is a large one."""
+    moved = [np.roll(DETAILED, number * 10, axis=1) for number in range(8)]
+    assert starts([picture for picture in moved for _ in range(3)]) == [0]
+
+
+def test_light_is_no_cut() -> None:
+    """A lamp is switched on: the same things are seen."""
+    assert starts([(DETAILED * 0.4).astype(np.uint8)] * 6 + [DETAILED] * 6) == [0]
+
+
+def test_plain_pictures_of_different_colours_are_cut() -> None:
+    """Titles on plain grounds have nothing that could be looked for but their colour."""
+    plain = [np.full_like(FIRST, level) for level in (20, 140)]
+    assert starts([plain[0]] * 5 + [plain[1]] * 5) == [0, 5]
+    assert starts([plain[0]] * 5 + [FIRST] * 5) == [0, 5]
 
 
 def test_pan_and_still_are_no_cut() -> None:

@@ -300,7 +300,8 @@ def test_track_of_something_else_is_refused(drawn: tuple, tmp_path: Path, capsys
     code, line = failure(capsys, "measure", clip, short, "--track", track, "--frames", "0-1")
     assert code == 3
     assert "holds no frame 0 (frames: 4 to 8)" in line
-    code, line = failure(capsys, "measure", clip, short, "--track", track)
+    quiet = ("--progress", "none")
+    code, line = failure(capsys, "measure", clip, short, "--track", track, *quiet)
     assert code == 1
     assert "has 2 frames" in line
     assert failure(capsys, "measure", clip, output, "--track", clip)[0] == 3

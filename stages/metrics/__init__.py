@@ -9,16 +9,21 @@ from stages.metrics.mesh_changes import MeshChanges, mesh_changes
 from stages.metrics.motion import Motion
 from stages.metrics.motion_difference import motion_difference
 from stages.metrics.pop_energy import pop_energy
+from stages.metrics.signature import Signature, change, likeness, signature
 from stages.metrics.warp_error import warp_error
 
 __all__ = [
     "Drift",
     "MeshChanges",
     "Motion",
+    "Signature",
+    "change",
     "drift",
     "jitter",
+    "likeness",
     "mesh_changes",
     "motion_difference",
     "pop_energy",
+    "signature",
     "warp_error",
 ]
