@@ -84,18 +84,17 @@ def _misfits(
     Returns:
         Mean absolute difference [code values], shape [K, N].
     """
-    side = np.arange(-HALF_PATCH, HALF_PATCH + 1, dtype=np.float32)
-    patch = np.stack(np.meshgrid(side, side), axis=-1).reshape(-1, 2)
-    centres = (points - 0.5).astype(np.float32)
-    cut = _sampled(earlier, centres[:, None] + patch)
-    laid = _sampled(later, (centres + motions.astype(np.float32)).reshape(-1, 1, 2) + patch)
-    laid = laid.reshape(len(motions), *cut.shape)
+    centres = points - 0.5
+    cut = _patches(earlier, centres)
+    laid = _patches(later, (centres + motions).reshape(-1, 2)).reshape(len(motions), *cut.shape)
     return cv2.absdiff(laid, np.broadcast_to(cut, laid.shape)).mean(axis=2, dtype=np.float32)
 
 
-def _sampled(picture: np.ndarray, places: np.ndarray) -> np.ndarray:
-    """A picture at places [N, P, 2], bilinear and continued beyond its border; [N, P] uint8."""
-    x, y = np.ascontiguousarray(np.moveaxis(places, 2, 0))
+def _patches(picture: np.ndarray, centres: np.ndarray) -> np.ndarray:
+    """Patches around places [N, 2], bilinear and continued beyond the border; [N, P] uint8."""
+    side = np.arange(-HALF_PATCH, HALF_PATCH + 1, dtype=np.float32)
+    x, y = centres.T.astype(np.float32)[:, :, None]
+    x, y = x + np.tile(side, len(side)), y + np.repeat(side, len(side))
     parts = [
         cv2.remap(
             picture,
@@ -104,6 +103,6 @@ def _sampled(picture: np.ndarray, places: np.ndarray) -> np.ndarray:
             cv2.INTER_LINEAR,
             borderMode=cv2.BORDER_REPLICATE,
         )
-        for begin in range(0, len(places), MOST_ROWS)
+        for begin in range(0, len(centres), MOST_ROWS)
     ]
     return np.concatenate(parts)
