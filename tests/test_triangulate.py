@@ -5,9 +5,12 @@ from functools import lru_cache
 import numpy as np
 import pytest
 
+import stages.approximate
 from stages.advect import Carried
+from stages.convergence import Convergence
 from stages.layouts import LAYOUTS
 from stages.mesh import Mesh
+from stages.optimize import OptimizeOptions, optimize
 from stages.refine import RefineOptions
 from stages.snapshot import Snapshot
 from stages.topology import TOPOLOGIES
@@ -22,9 +25,14 @@ WIDTH, HEIGHT = 151, 113
 ITERATIONS = 60
 
 
-def options(triangles: int = 120, error: float | None = None, **others) -> TriangulateOptions:
+def options(
+    triangles: int = 120,
+    error: float | None = None,
+    max_area: float | None = None,
+    **others,
+) -> TriangulateOptions:
     """Few iterations, so that tests are quick."""
-    refine = RefineOptions(triangles=triangles, error=error)
+    refine = RefineOptions(triangles=triangles, error=error, max_area=max_area)
     return TriangulateOptions(**{"iterations": ITERATIONS, "refine": refine, **others})
 
 
@@ -231,3 +239,44 @@ def test_still_clip_comes_to_rest(topology: str, device: str) -> None:
     assert np.median(moved) < 0.05
     assert np.quantile(moved, 0.9) < 0.25
     assert snapshots[-1].rmse <= 1.03 * snapshots[0].rmse
+
+
+def test_no_triangle_is_too_large_in_later_frames() -> None:
+    """A bug of the past: vertices that followed a frame left triangles above the largest area."""
+    wanted = options(max_area=300.0)
+    triangulator = Triangulator(Device("cpu"), (WIDTH, HEIGHT), wanted)
+    snapshot = triangulator.first(
+        frame_of(scene()), LAYOUTS["importance"](), np.random.default_rng(0)
+    )
+    for number in range(1, 5):
+        moved = np.roll(scene(), 3 * number, axis=1)
+        snapshot = triangulator.next(frame_of(moved, number), standing(snapshot.mesh))
+        assert_valid(snapshot.mesh)
+        assert snapshot.mesh.areas.max() <= 300.0
+
+
+def test_a_falling_energy_is_never_taken_for_converged() -> None:
+    """One idle round is forgiven; what saves its part goes on for ever."""
+    convergence = Convergence(least_saving=0.01, patience=2)
+    falling = 1000.0 * 0.98 ** np.arange(50)
+    assert not any(convergence.is_reached(energy) for energy in falling)
+    assert not convergence.is_reached(falling[-1])
+    assert not convergence.is_reached(0.9 * falling[-1])
+    assert not convergence.is_reached(0.9 * falling[-1])
+    assert convergence.is_reached(0.9 * falling[-1])
+
+
+def test_the_paper_s_method_is_not_stopped_while_it_improves(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A bug of the past: one idle round ended it, and comparisons with it were unfair."""
+    done = []
+
+    def counted(workspace, mesh, iterations, *values, **named):
+        done.append(iterations)
+        return optimize(workspace, mesh, iterations, *values, **named)
+
+    monkeypatch.setattr(stages.approximate, "optimize", counted)
+    pull = OptimizeOptions(trust_region=0.05)
+    triangulated(scene(), options(topology="delaunay", iterations=160, optimize=pull))
+    assert sum(done) == 160
