@@ -1,4 +1,4 @@
-"""Pictures for triangles that need no file: the lower edge of a picture is a triangle's base edge."""
+"""Pictures for triangles that need no file; the lower edge of a picture is the base edge."""
 
 from collections.abc import Callable
 from functools import cache
