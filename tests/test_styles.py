@@ -1,4 +1,4 @@
-"""Contracts of all styles: they hold still, move with their triangle, blend, and say what is wrong."""
+"""Contracts of all styles: they hold still, move with their triangle, blend and name mistakes."""
 
 from pathlib import Path
 
@@ -53,7 +53,7 @@ def colored(mesh: Mesh, degree: int, origin: np.ndarray) -> Snapshot:
     slopes = rng.integers(-16, 17, (count, 3, 2)) / 4
     coefficients[:, :, LINEAR.term(1, 0)] = slopes[:, :, 0]
     coefficients[:, :, LINEAR.term(0, 1)] = slopes[:, :, 1]
-    coefficients[:, :, LINEAR.term(0, 0)] = means - slopes @ (origin + (20, 15))
+    coefficients[:, :, LINEAR.term(0, 0)] = means - slopes @ np.add(origin, (20, 15))
     return snapshot_with(mesh, coefficients, model=LINEAR)
 
 

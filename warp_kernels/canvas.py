@@ -7,7 +7,6 @@ import warp as wp
 
 from warp_kernels.blend import Coat
 from warp_kernels.device import Device, Phase
-from warp_kernels.edge_coverage import BAND, record_edge_coverage
 from warp_kernels.gbuffer import record_gbuffer
 from warp_kernels.layers import Layers, LayerTables
 from warp_kernels.paint import Paint, shapes_of, to_places
@@ -55,11 +54,7 @@ class Canvas:
         self._triangle_of = device.empty((self._band * self.samples, columns), int)
         is_opaque = any(coat.is_opaque for coat in self._coats)
         self._pixels = device.empty((height, width), wp.vec3ub if is_opaque else wp.vec4ub)
-        self._edge_count = device.empty(1, int)
         self._curved = device.empty(1, int)
-        self._line_width = max((style.line_width for style in styles), default=0.0)
-        self._coverage = device.empty((height, width) if self._line_width else (1, 1), float)
-        device.clear(self._coverage)
         self._sample_columns = self._filled(centres(picture[0], columns), int)
         self._sample_rows = self._filled(centres(picture[1], height * self.samples), int)
         self._steady = self._steady_scene(needs_source=any(s.needs_source for s in styles))
@@ -71,15 +66,12 @@ class Canvas:
         width, height = self.picture
         step = step_for(self.picture, self.output)
         size = (-(-height // step), -(-width // step)) if needs_source else (1, 1)
-        per_pixel = np.array(self.picture) / self.output
         return {
             "curved": self._curved,
-            "edge_coverage": self._coverage,
             "source": self.device.empty(size, wp.vec3ub),
             "source_step": step,
             "columns": self._filled(centres(width, self.output[0]), int),
             "rows": self._filled(centres(height, self.output[1]), int),
-            "pixel": float(np.sqrt((per_pixel**2).mean())),
         }
 
     def _parameters_of(self, styles: tuple[Style, ...], textures: list[Texture | None]) -> wp.array:
@@ -99,7 +91,6 @@ class Canvas:
         *,
         vertices: np.ndarray,
         triangles: np.ndarray,
-        edges: np.ndarray,
         paint: Paint,
         layers: Layers | None = None,
         source: np.ndarray | None = None,
@@ -109,7 +100,6 @@ class Canvas:
         Args:
             vertices: Positions [px of the picture], [V, 2].
             triangles: Corners, [T, 3].
-            edges: Ends, [E, 2].
             paint: The triangles, then the M - T vanished ones that show through.
             layers: What fading triangles let through; None where none fades, M is T then.
             source: The picture [code values], [H, W, 3] uint8; looked at if a style needs it.
@@ -126,21 +116,12 @@ class Canvas:
         )
         if layers is not None:
             self._write_layers(layers)
-        for array, values in (
-            (self._vertices, vertices),
-            (self._triangles, triangles),
-            (self._edges, edges),
-            (self._edge_count, np.array([len(edges)])),
-        ):
-            self.device.write(array, values)
+        self.device.write(self._vertices, vertices)
+        self.device.write(self._triangles, triangles)
         self._write_paint(paint)
         if source is not None and self._steady["source"].size > 1:
             self.device.write(self._steady["source"], reduced(source, self._steady["source_step"]))
         phases = []
-        if self._line_width:
-            self.device.clear(self._coverage)
-            self._edge_drawing.resize(-(-self.output[1] // BAND), per_element=len(edges))
-            phases.append(self._edge_drawing)
         for top, filling, shading in self._bands(fades=layers is not None):
             filling.resize(len(triangles))
             shading.resize(min(self._band, self.output[1] - top))
@@ -153,7 +134,7 @@ class Canvas:
         write, tables, shapes = self.device.write, self._tables, shapes_of(paint.corners)
         for name in ("colors", "gradients", "hashes"):
             write(tables[name], getattr(paint, name))
-        for name in ("anchors", "sides", "incircles"):
+        for name in ("anchors", "sides", "incircles", "lines"):
             write(tables[name], getattr(shapes, name))
         write(self._curved, np.array([0 if paint.curvatures is None else 1]))
         if paint.curvatures is not None:
@@ -161,7 +142,7 @@ class Canvas:
 
     def _write_layers(self, layers: Layers) -> None:
         """Hand over what shows through."""
-        for name in ("weights", "turns", "spans", "links", "lines"):
+        for name in ("weights", "turns", "spans", "links"):
             self.device.write(getattr(self._layers, name), getattr(layers, name))
         self.device.write(self._layers.departures, to_places(layers.departures))
 
@@ -183,7 +164,6 @@ class Canvas:
         }
         self._vertices = self._empty(vertices, wp.vec2d)
         self._triangles = self._empty(triangles, wp.vec3i)
-        self._edges = self._empty(vertices + triangles + 1, wp.vec2i)
         self._tables = {
             "colors": self._empty(layers, wp.vec3f),
             "gradients": self._empty((layers, 2), wp.vec3f),
@@ -191,6 +171,7 @@ class Canvas:
             "anchors": self._empty(layers, wp.vec2i),
             "sides": self._empty((layers, 2), wp.vec2f),
             "incircles": self._empty(layers, wp.vec3f),
+            "lines": self._empty(layers, wp.mat33f),
             "hashes": self._empty(layers, wp.uint32),
         }
         tables = LayerTables()
@@ -199,18 +180,8 @@ class Canvas:
         tables.departures = self._empty(layers, wp.vec2i)
         tables.spans = self._empty(layers, wp.vec2i)
         tables.links = self._empty(links, int)
-        tables.lines = self._empty(layers, wp.mat33f)
         self._layers = tables
         self._recorded: dict[bool, list[tuple[int, Phase, Phase]]] = {}
-        self._edge_drawing = record_edge_coverage(
-            self.device,
-            vertices=self._vertices,
-            edges=self._edges,
-            edge_count=self._edge_count,
-            scale=self._scale,
-            half_width=0.5 * self._line_width * self._scale[1],
-            coverage_out=self._coverage,
-        )
 
     @property
     def _scale(self) -> tuple[float, float]:
@@ -254,6 +225,7 @@ class Canvas:
             triangle_of=self._triangle_of,
             sample_columns=self._sample_columns,
             sample_rows=self._sample_rows,
+            pixel=float(np.sqrt((0.5 / np.square(scale)).sum())),
             top=top,
             canvas_out=self._pixels,
         )

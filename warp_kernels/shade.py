@@ -83,6 +83,7 @@ def _shade_kernel(coats: tuple[Coat, ...], samples: int, fades: bool) -> Any:
         triangle_of: wp.array2d(dtype=int),
         sample_columns: wp.array(dtype=int),
         sample_rows: wp.array(dtype=int),
+        pixel: float,
         top: int,
         # Out:
         canvas_out: wp.array2d(dtype=pixel_type),
@@ -104,7 +105,7 @@ def _shade_kernel(coats: tuple[Coat, ...], samples: int, fades: bool) -> Any:
         here = Sample()
         here.row = row
         # as far as a pixel's corner is from its centre, also where a map stretches by a quarter
-        near = scene.pixel * 0.884
+        near = 0.884 * pixel
         column = int(0)
         while column < canvas_out.shape[1]:
             first = column * wp.static(samples)
@@ -114,9 +115,11 @@ def _shade_kernel(coats: tuple[Coat, ...], samples: int, fades: bool) -> Any:
             if is_whole(line, first, width, wp.static(samples - 1)):
                 here.place = wp.vec2i(scene.columns[column], scene.rows[row])
                 here.offset = offset_of(here.place, scene.anchors[here.triangle])
+                here.extent = pixel
                 seen = look(scene, parameters, layers, here)
             if seen.clear < near:
                 seen = Seen()
+                here.extent = pixel * wp.static(1.0 / samples)
                 for i in range(wp.static(samples)):
                     for j in range(wp.static(samples)):
                         here.triangle = line[i * width + first + j]
@@ -145,6 +148,7 @@ def record_shade(
     triangle_of: wp.array,
     sample_columns: wp.array,
     sample_rows: wp.array,
+    pixel: float,
     top: int,
     canvas_out: wp.array,
 ) -> Phase:
@@ -161,9 +165,11 @@ def record_shade(
         triangle_of: Triangle of every sample of a band, see `gbuffer`.
         sample_columns: Places of the samples of a row [2^-16 px], [columns times samples].
         sample_rows: The same down, [rows times samples].
+        pixel: Size of an output pixel [px of the picture].
         top: The output row with which the band begins.
         canvas_out: Code values, [rows, columns]: vec3ub if a coat is opaque, else vec4ub with
             straight alpha.
     """
-    inputs = [scene, parameters, layers, triangle_of, sample_columns, sample_rows, top]
+    inputs = [scene, parameters, layers, triangle_of, sample_columns, sample_rows]
+    inputs += [pixel, top]
     return device.record(_shade_kernel(coats, samples, fades), inputs, [canvas_out])

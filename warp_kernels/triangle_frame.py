@@ -28,24 +28,6 @@ def along_base(scene: Scene, sample: Sample) -> wp.vec2f:
 
 
 @wp.func
-def depth_from(a: wp.vec2f, b: wp.vec2f, p: wp.vec2f) -> float:
-    """Distance of p from the line a-b to the inside of a triangle [px]."""
-    side = b - a
-    return wp.dot(perpendicular(side), p - a) / wp.max(wp.length(side), 1.0e-6)
-
-
-@wp.func
-def depth_in(scene: Scene, sample: Sample) -> float:
-    """Distance to the nearest side of the triangle [px]."""
-    first = scene.sides[sample.triangle, 0]
-    second = scene.sides[sample.triangle, 1]
-    corner = wp.vec2f(0.0, 0.0)
-    p = sample.offset
-    depth = wp.min(depth_from(corner, first, p), depth_from(first, second, p))
-    return wp.min(depth, depth_from(second, corner, p))
-
-
-@wp.func
 def from_incentre(scene: Scene, sample: Sample) -> wp.vec2f:
     """Position seen from the centre of the incircle [px]."""
     circle = scene.incircles[sample.triangle]
@@ -65,9 +47,24 @@ def chance(scene: Scene, triangle: int, number: int) -> float:
 
 
 @wp.func
-def coverage_of(depth: float, pixel: float) -> float:
-    """Part of a pixel that lies inside of a border at `depth` from its centre, both in px."""
-    return wp.clamp(depth / pixel + 0.5, 0.0, 1.0)
+def coverage_of(depth: float, extent: float) -> float:
+    """Part of a small square that lies inside of a border at `depth` from its middle, both px."""
+    return wp.clamp(depth / extent + 0.5, 0.0, 1.0)
+
+
+@wp.func
+def line_coverage(distance: float, half_width: float, extent: float) -> float:
+    """Part of a small square within `half_width` of a line at `distance` from its middle [px]."""
+    outer = coverage_of(half_width - distance, extent)
+    return outer - coverage_of(-half_width - distance, extent)
+
+
+@wp.func
+def distance_to_segment(p: wp.vec2f, a: wp.vec2f, b: wp.vec2f) -> float:
+    """Distance from a point to a line segment [px]."""
+    along = b - a
+    t = wp.dot(p - a, along) / wp.max(wp.dot(along, along), 1.0e-12)
+    return wp.length(p - a - wp.clamp(t, 0.0, 1.0) * along)
 
 
 @wp.func

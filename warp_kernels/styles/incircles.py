@@ -23,7 +23,7 @@ def incircle_color(
     ink = Ink()
     ink.color = scene.colors[sample.triangle]
     ink.opacity = 1.0 - smooth_rise((away / radius - 1.0 + softness) / softness)
-    ink.coverage = coverage_of(radius - away, scene.pixel)
+    ink.coverage = coverage_of(radius - away, sample.extent)
     return ink
 
 

@@ -12,6 +12,8 @@ from warp_kernels.triangle_frame import from_incentre, inradius
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 
+_WHITE = wp.constant(wp.vec3f(255.0, 255.0, 255.0))
+_SHADOW = wp.constant(wp.vec3f(0.6, 0.8, 0.0))
 _LIGHT = wp.constant(wp.vec3f(-0.45, -0.6, 0.66))
 """Where the light of the highlights comes from: from the upper left, above the picture."""
 
@@ -38,9 +40,11 @@ def lens_color(scene: Scene, parameters: StyleParameters, sample: Sample, below:
     moved = FIXED * depth * refracted(normal, parameters.numbers[2])
     place = sample.place + wp.vec2i(int(wp.rint(moved[0])), int(wp.rint(moved[1])))
     color = source_at(scene, place)
-    half = wp.normalize(_LIGHT + wp.vec3f(0.0, 0.0, 1.0))
-    shine = parameters.numbers[3] * wp.pow(wp.max(wp.dot(normal, half), 0.0), 60.0)
-    return full_ink(color + shine * (wp.vec3f(255.0, 255.0, 255.0) - color))
+    # glass that turns away from the viewer mirrors the dark around it, or the light
+    light = wp.max(wp.dot(normal, wp.normalize(_LIGHT + wp.vec3f(0.0, 0.0, 1.0))), 0.0)
+    shine = parameters.numbers[3] * wp.pow(light, 90.0)
+    shade = 1.0 - 0.7 * parameters.numbers[3] * (1.0 - normal[2]) * (1.0 + wp.dot(normal, _SHADOW))
+    return full_ink(wp.max(shade, 0.0) * color + shine * (_WHITE - wp.max(shade, 0.0) * color))
 
 
 @dataclass(frozen=True)
@@ -48,24 +52,24 @@ class Lenses(Style):
     """Gaussian lenses at the incentres, rays refracted to the source picture below.
 
     Source: Lawonn & Guenther, Stylized Image Triangulation (2018), Sec. 5, Fig. 6.
-    Deviation: a highlight shows the glass.
+    Deviation: highlights and shadows show the glass.
     """
 
     size: float = field(
-        default=0.55,
+        default=0.5,
         metadata={"help": "standard deviation relative to the inradius", "range": (0.05, 3.0)},
     )
     height: float = field(
-        default=0.9, metadata={"help": "height relative to the inradius", "range": (0.0, 5.0)}
+        default=0.7, metadata={"help": "height relative to the inradius", "range": (0.0, 5.0)}
     )
     index: float = field(
         default=1.5, metadata={"help": "refractive index of the glass", "range": (1.0, 3.0)}
     )
     shine: float = field(
-        default=0.5, metadata={"help": "strength of the highlights", "range": (0.0, 1.0)}
+        default=0.7, metadata={"help": "strength of highlights and shadows", "range": (0.0, 1.0)}
     )
     depth: float = field(
-        default=0.6,
+        default=4.0,
         metadata={
             "help": "thickness of the glass below, relative to the inradius",
             "range": (0.0, 10.0),

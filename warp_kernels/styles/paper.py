@@ -46,7 +46,7 @@ def paper_color(scene: Scene, parameters: StyleParameters, sample: Sample, below
     side = parameters.numbers[4]
     at = along_base(scene, sample) / side
     at += wp.vec2f(chance(scene, sample.triangle, 0), chance(scene, sample.triangle, 1))
-    value = texture_at(scene, parameters, 0, at, scene.pixel / side, True)
+    value = texture_at(scene, parameters, 0, at, sample.extent / side, True)
     sheet = chance(scene, sample.triangle, 2) - 0.5
     brightness = 0.5 + parameters.numbers[3] * (value - 0.5) + parameters.numbers[5] * sheet
     color = wp.vec3f(parameters.numbers[0], parameters.numbers[1], parameters.numbers[2])
@@ -64,7 +64,7 @@ class Paper(Style):
 
     color: str = field(default="#f3eee3", metadata={"help": "#rgb or #rrggbb", "form": "color"})
     grain: float = field(
-        default=0.5, metadata={"help": "contrast of the grain", "range": (0.0, 4.0)}
+        default=0.4, metadata={"help": "contrast of the grain", "range": (0.0, 4.0)}
     )
     size: float = field(
         default=256.0,

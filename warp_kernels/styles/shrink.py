@@ -5,22 +5,23 @@ from typing import Any, ClassVar
 
 import warp as wp
 
-from warp_kernels.edge_coverage import distance_to_segment
-from warp_kernels.scene import Ink, Sample, Scene, StyleParameters
+from warp_kernels.scene import Ink, Sample, Scene, StyleParameters, depth_inside
 from warp_kernels.styles.style import Style
-from warp_kernels.triangle_frame import coverage_of, depth_from, from_incentre, inradius
+from warp_kernels.triangle_frame import (
+    coverage_of,
+    distance_to_segment,
+    from_incentre,
+    inradius,
+)
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 
 
 @wp.func
-def depth_in_triangle(p: wp.vec2f, a: wp.vec2f, b: wp.vec2f, c: wp.vec2f) -> float:
-    """Distance from the outline of a triangle, positive inside [px]."""
-    depth = wp.min(wp.min(depth_from(a, b, p), depth_from(b, c, p)), depth_from(c, a, p))
-    if depth >= 0.0:
-        return depth
+def outside_of(p: wp.vec2f, a: wp.vec2f, b: wp.vec2f, c: wp.vec2f) -> float:
+    """Distance from the outline of a triangle [px]."""
     away = wp.min(distance_to_segment(p, a, b), distance_to_segment(p, b, c))
-    return -wp.min(away, distance_to_segment(p, c, a))
+    return wp.min(away, distance_to_segment(p, c, a))
 
 
 @wp.func
@@ -30,18 +31,19 @@ def shrunk_color(scene: Scene, parameters: StyleParameters, sample: Sample, belo
     radius = inradius(scene, sample)
     left = wp.max(radius - 0.5 * parameters.numbers[0], parameters.numbers[1] * radius)
     rounding = parameters.numbers[2] * left
-    size = (left - rounding) / radius
-    centre = wp.vec2f(scene.incircles[t][0], scene.incircles[t][1])
-    depth = depth_in_triangle(
-        from_incentre(scene, sample),
-        -size * centre,
-        size * (scene.sides[t, 0] - centre),
-        size * (scene.sides[t, 1] - centre),
-    )
+    core = left - rounding
+    # the core is the triangle without all that is nearer to a side than its inradius allows
+    depth = depth_inside(scene.lines[t], sample.offset) - (radius - core)
+    if depth < 0.0:
+        size = core / radius
+        centre = wp.vec2f(scene.incircles[t][0], scene.incircles[t][1])
+        first = size * (scene.sides[t, 0] - centre)
+        second = size * (scene.sides[t, 1] - centre)
+        depth = -outside_of(from_incentre(scene, sample), -size * centre, first, second)
     ink = Ink()
     ink.color = scene.colors[t]
     ink.opacity = 1.0
-    ink.coverage = coverage_of(depth + rounding, scene.pixel)
+    ink.coverage = coverage_of(depth + rounding, sample.extent)
     return ink
 
 
@@ -61,7 +63,7 @@ class Shrink(Style):
         metadata={"help": "least part of its size that a triangle keeps", "range": (0.0, 1.0)},
     )
     rounding: float = field(
-        default=0.0,
+        default=0.3,
         metadata={"help": "roundness of corners, 1 makes discs", "range": (0.0, 1.0)},
     )
 

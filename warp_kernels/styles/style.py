@@ -65,11 +65,6 @@ class Style:
         """Whether nothing can be transparent where it is drawn."""
         return self.covers and self.opacity == 1.0
 
-    @property
-    def line_width(self) -> float:
-        """Width of the edges that must be drawn beforehand [px of the picture], 0 for none."""
-        return 0.0
-
     def numbers(self) -> tuple[float, ...]:
         """At most sixteen numbers for the shader."""
         return ()
