@@ -55,7 +55,7 @@ class Drawing:
             self._shot = take.shot
         if take.is_shown:
             snapshot = take.snapshot
-            pixels = self._renderer.render(snapshot, self._fading)
+            pixels = self._renderer.render(snapshot, self._fading, take.source)
             self._encoder.write(pixels, snapshot.pts, snapshot.time_base, snapshot.frame_index)
 
     def __enter__(self) -> "Drawing":

@@ -211,6 +211,11 @@ class Job:
         drawn = LINEAR if any(style.degree > 0 for style in self.shown_styles) else CONSTANT
         return max(self.triangulate.model, drawn, key=lambda model: model.degree)
 
+    @property
+    def needs_source(self) -> bool:
+        """Whether a look shows the source picture."""
+        return any(style.needs_source for style in self.shown_styles)
+
     def size_for(self, source_size: tuple[int, int]) -> tuple[int, int]:
         """Size of the output for a source.
 

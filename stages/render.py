@@ -3,6 +3,7 @@
 import numpy as np
 
 from stages.fading import Fading
+from stages.gray import read_gray
 from stages.paint import paint_of
 from stages.snapshot import Snapshot
 from warp_kernels.canvas import Canvas
@@ -23,6 +24,7 @@ class Renderer:
 
     Raises:
         OptionError: If the output is too large or has no pixel.
+        MediaError: If a texture cannot be read.
     """
 
     def __init__(
@@ -36,17 +38,26 @@ class Renderer:
             raise OptionError(
                 f"an output of {output[0]}x{output[1]}: sides must lie between 1 and {MAX_SIDE} px"
             )
-        self._canvas = Canvas(device, picture, output, styles)
+        textures = [style.texture(read_gray) for style in styles]
+        self._canvas = Canvas(device, picture, output, styles, textures)
 
-    def render(self, snapshot: Snapshot, fading: Fading | None = None) -> np.ndarray:
+    def render(
+        self,
+        snapshot: Snapshot,
+        fading: Fading | None = None,
+        source: np.ndarray | None = None,
+    ) -> np.ndarray:
         """Draw a snapshot.
 
         Args:
             snapshot: What to draw.
             fading: What lingers of the frames before it, if anything; it ends with the snapshot.
+            source: The picture from which it was made [code values], [H, W, 3] uint8; needed if a
+                style does.
 
         Returns:
-            Code values, [rows, columns, 3] uint8.
+            Code values, [rows, columns, 3] uint8, or [rows, columns, 4] with straight alpha if no
+            style of the stack is opaque.
         """
         mesh = snapshot.mesh
         paint, layers = (paint_of(snapshot), None) if fading is None else fading.layers()
@@ -54,9 +65,7 @@ class Renderer:
             vertices=mesh.vertices,
             triangles=mesh.triangles,
             edges=mesh.edge_vertices,
-            colors=paint.colors,
-            gradients=paint.gradients,
-            curvatures=paint.curvatures,
-            centres=paint.centres,
+            paint=paint,
             layers=layers,
+            source=source,
         )

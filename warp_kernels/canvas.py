@@ -5,14 +5,18 @@ from typing import Any
 import numpy as np
 import warp as wp
 
+from warp_kernels.blend import Coat
 from warp_kernels.device import Device, Phase
 from warp_kernels.edge_coverage import BAND, record_edge_coverage
 from warp_kernels.gbuffer import record_gbuffer
-from warp_kernels.layers import Affine, Layers, LayerTables
+from warp_kernels.layers import Layers, LayerTables
+from warp_kernels.paint import Paint, shapes_of, to_places
 from warp_kernels.raster import MAX_SIDE
-from warp_kernels.scene import Scene, StyleParameters
+from warp_kernels.scene import FRACTION_BITS, Scene, StyleParameters
 from warp_kernels.shade import record_shade
+from warp_kernels.source_picture import reduced, step_for
 from warp_kernels.styles import Style
+from warp_kernels.texture import Texture, pack
 
 SAMPLES = 3
 """Samples per output pixel, across and down each; fewer where the sample grid would exceed what
@@ -29,6 +33,7 @@ class Canvas:
         picture: Width and height of the picture that the meshes cover [px].
         output: Width and height of the output [px], at most MAX_SIDE each.
         styles: Bottom to top.
+        textures: What the shader of each style looks into, or None.
     """
 
     def __init__(
@@ -37,30 +42,57 @@ class Canvas:
         picture: tuple[int, int],
         output: tuple[int, int],
         styles: tuple[Style, ...],
+        textures: list[Texture | None],
     ) -> None:
         self.device = device
         self.picture = picture
         self.output = output
-        self.styles = styles
         self.samples = max(1, min(SAMPLES, MAX_SIDE // max(output)))
+        self._coats = tuple(Coat(style.shader, style.blend, style.is_opaque) for style in styles)
         width, height = output
         columns = width * self.samples
         self._band = max(1, min(height, BAND_SAMPLES // (columns * self.samples)))
-        band = (self._band * self.samples, columns)
-        self._triangle_of = device.empty(band, int)
-        self._pixels = device.empty((height, width), wp.vec3ub)
+        self._triangle_of = device.empty((self._band * self.samples, columns), int)
+        is_opaque = any(coat.is_opaque for coat in self._coats)
+        self._pixels = device.empty((height, width), wp.vec3ub if is_opaque else wp.vec4ub)
         self._edge_count = device.empty(1, int)
         self._curved = device.empty(1, int)
         self._line_width = max((style.line_width for style in styles), default=0.0)
-        shape = (height, width) if self._line_width else (1, 1)
-        self._coverage = device.empty(shape, float)
+        self._coverage = device.empty((height, width) if self._line_width else (1, 1), float)
         device.clear(self._coverage)
-        packed = np.zeros((max(1, len(styles)), 8), dtype=np.float32)
-        for row, style in zip(packed, styles, strict=False):
-            row[: len(style.parameters())] = style.parameters()
-        self._parameters = device.empty(len(packed), StyleParameters)
-        device.write(self._parameters, packed)
+        self._sample_columns = self._filled(centres(picture[0], columns), int)
+        self._sample_rows = self._filled(centres(picture[1], height * self.samples), int)
+        self._steady = self._steady_scene(needs_source=any(s.needs_source for s in styles))
+        self._parameters = self._parameters_of(styles, textures)
         self._allocate(vertices=512, triangles=1024, layers=1024, links=1)
+
+    def _steady_scene(self, *, needs_source: bool) -> dict[str, Any]:
+        """The parts of a scene that are the same for all frames."""
+        width, height = self.picture
+        step = step_for(self.picture, self.output)
+        size = (-(-height // step), -(-width // step)) if needs_source else (1, 1)
+        per_pixel = np.array(self.picture) / self.output
+        return {
+            "curved": self._curved,
+            "edge_coverage": self._coverage,
+            "source": self.device.empty(size, wp.vec3ub),
+            "source_step": step,
+            "columns": self._filled(centres(width, self.output[0]), int),
+            "rows": self._filled(centres(height, self.output[1]), int),
+            "pixel": float(np.sqrt((per_pixel**2).mean())),
+        }
+
+    def _parameters_of(self, styles: tuple[Style, ...], textures: list[Texture | None]) -> wp.array:
+        """What the styles were asked for; their textures become a part of the scene."""
+        texels, levels, ranges = pack(textures)
+        self._steady["texels"] = self._filled(texels, wp.uint8)
+        self._steady["levels"] = self._filled(levels, wp.vec4i)
+        packed = np.zeros(max(1, len(styles)), dtype=StyleParameters.numpy_dtype())
+        for row, style, (first, count) in zip(packed, styles, ranges, strict=False):
+            numbers = style.numbers()
+            row["numbers"].reshape(-1)[: len(numbers)] = numbers
+            row["opacity"], row["first_level"], row["level_count"] = style.opacity, first, count
+        return self._filled(packed, StyleParameters)
 
     def draw(
         self,
@@ -68,11 +100,9 @@ class Canvas:
         vertices: np.ndarray,
         triangles: np.ndarray,
         edges: np.ndarray,
-        colors: np.ndarray,
-        gradients: np.ndarray,
-        curvatures: np.ndarray | None,
-        centres: np.ndarray,
+        paint: Paint,
         layers: Layers | None = None,
+        source: np.ndarray | None = None,
     ) -> np.ndarray:
         """Draw a mesh.
 
@@ -80,20 +110,18 @@ class Canvas:
             vertices: Positions [px of the picture], [V, 2].
             triangles: Corners, [T, 3].
             edges: Ends, [E, 2].
-            colors: Mean colours of the triangles, then of the vanished ones that show through
-                [code values], [M, 3].
-            gradients: Change of colour to the right and down [code values / px], [M, 2, 3].
-            curvatures: What quadratic colours add, see `Scene`, [M, 4, 3]; None for others.
-            centres: Centroids [px of the picture], [M, 2].
+            paint: The triangles, then the M - T vanished ones that show through.
             layers: What fading triangles let through; None where none fades, M is T then.
+            source: The picture [code values], [H, W, 3] uint8; looked at if a style needs it.
 
         Returns:
-            Code values, [rows, columns, 3] uint8; a copy of its own.
+            Code values, [rows, columns, 3] uint8, or [rows, columns, 4] with straight alpha if no
+            style of the stack is opaque; a copy of its own.
         """
         self._reserve(
             vertices=len(vertices),
             triangles=len(triangles),
-            layers=len(colors),
+            layers=len(paint.colors),
             links=1 if layers is None else len(layers.links),
         )
         if layers is not None:
@@ -102,15 +130,12 @@ class Canvas:
             (self._vertices, vertices),
             (self._triangles, triangles),
             (self._edges, edges),
-            (self._colors, colors),
-            (self._gradients, gradients),
-            (self._curved, np.array([0 if curvatures is None else 1])),
-            (self._centres, centres),
             (self._edge_count, np.array([len(edges)])),
         ):
             self.device.write(array, values)
-        if curvatures is not None:
-            self.device.write(self._curvatures, curvatures)
+        self._write_paint(paint)
+        if source is not None and self._steady["source"].size > 1:
+            self.device.write(self._steady["source"], reduced(source, self._steady["source_step"]))
         phases = []
         if self._line_width:
             self.device.clear(self._coverage)
@@ -123,10 +148,22 @@ class Canvas:
         self.device.run(phases)
         return self.device.read(self._pixels, self.output[1])
 
+    def _write_paint(self, paint: Paint) -> None:
+        """Hand over shapes and colours."""
+        write, tables, shapes = self.device.write, self._tables, shapes_of(paint.corners)
+        for name in ("colors", "gradients", "hashes"):
+            write(tables[name], getattr(paint, name))
+        for name in ("anchors", "sides", "incircles"):
+            write(tables[name], getattr(shapes, name))
+        write(self._curved, np.array([0 if paint.curvatures is None else 1]))
+        if paint.curvatures is not None:
+            write(tables["curvatures"], paint.curvatures)
+
     def _write_layers(self, layers: Layers) -> None:
         """Hand over what shows through."""
-        for name in ("weights", "maps", "spans", "links", "lines"):
+        for name in ("weights", "turns", "spans", "links", "lines"):
             self.device.write(getattr(self._layers, name), getattr(layers, name))
+        self.device.write(self._layers.departures, to_places(layers.departures))
 
     def _reserve(self, **counts: int) -> None:
         """Make room for so many of each kind, and some more."""
@@ -147,13 +184,19 @@ class Canvas:
         self._vertices = self._empty(vertices, wp.vec2d)
         self._triangles = self._empty(triangles, wp.vec3i)
         self._edges = self._empty(vertices + triangles + 1, wp.vec2i)
-        self._colors = self._empty(layers, wp.vec3f)
-        self._gradients = self._empty((layers, 2), wp.vec3f)
-        self._curvatures = self._empty((layers, 4), wp.vec3f)
-        self._centres = self._empty(layers, wp.vec2f)
+        self._tables = {
+            "colors": self._empty(layers, wp.vec3f),
+            "gradients": self._empty((layers, 2), wp.vec3f),
+            "curvatures": self._empty((layers, 4), wp.vec3f),
+            "anchors": self._empty(layers, wp.vec2i),
+            "sides": self._empty((layers, 2), wp.vec2f),
+            "incircles": self._empty(layers, wp.vec3f),
+            "hashes": self._empty(layers, wp.uint32),
+        }
         tables = LayerTables()
         tables.weights = self._empty(layers, float)
-        tables.maps = self._empty(layers, Affine)
+        tables.turns = self._empty(layers, wp.mat22f)
+        tables.departures = self._empty(layers, wp.vec2i)
         tables.spans = self._empty(layers, wp.vec2i)
         tables.links = self._empty(links, int)
         tables.lines = self._empty(layers, wp.mat33f)
@@ -190,12 +233,8 @@ class Canvas:
         """Record what fills and what shades the band that begins with output row `top`."""
         scale = self._scale
         scene = Scene()
-        scene.colors = self._colors
-        scene.gradients = self._gradients
-        scene.curvatures = self._curvatures
-        scene.curved = self._curved
-        scene.centres = self._centres
-        scene.edge_coverage = self._coverage
+        for name, value in {**self._steady, **self._tables}.items():
+            setattr(scene, name, value)
         filling = record_gbuffer(
             self.device,
             vertices=self._vertices,
@@ -206,14 +245,15 @@ class Canvas:
         )
         shading = record_shade(
             self.device,
-            shaders=tuple(style.shader for style in self.styles),
+            coats=self._coats,
             samples=self.samples,
             scene=scene,
             parameters=self._parameters,
             layers=self._layers,
             fades=fades,
             triangle_of=self._triangle_of,
-            picture_per_sample=(1 / (scale[0] * self.samples), 1 / (scale[1] * self.samples)),
+            sample_columns=self._sample_columns,
+            sample_rows=self._sample_rows,
             top=top,
             canvas_out=self._pixels,
         )
@@ -221,3 +261,22 @@ class Canvas:
 
     def _empty(self, shape: Any, dtype: Any) -> wp.array:
         return self.device.empty(shape, dtype)
+
+    def _filled(self, values: np.ndarray, dtype: Any) -> wp.array:
+        """A device array of given values."""
+        array = self.device.empty(len(values), dtype)
+        self.device.write(array, values)
+        return array
+
+
+def centres(side: int, count: int) -> np.ndarray:
+    """Places of the centres of equal parts of a side of the picture [2^-16 px], [count].
+
+    Whole numbers throughout: parts that are a whole number of pixels apart are exactly so.
+
+    Args:
+        side: Length of the side [px].
+        count: Number of parts.
+    """
+    halves = (2 * np.arange(count, dtype=np.int64) + 1) * side
+    return (halves << (FRACTION_BITS - 1)) // count

@@ -3,12 +3,15 @@
 import warp as wp
 
 from warp_kernels.device import Device, Phase
+from warp_kernels.raster import SUBPIXELS, to_fixed
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 
 BAND = 32
 """Rows of one band [px]: bands are what threads share out, so no two write one pixel."""
 _BAND = wp.constant(BAND)
+_UNIT = wp.constant(SUBPIXELS)
+_PER_UNIT = wp.constant(1.0 / SUBPIXELS)
 
 
 @wp.func
@@ -45,14 +48,17 @@ def cover_edges(
         return
     band = number / edge_count[0]
     edge = edges[number - band * edge_count[0]]
-    first = wp.cw_mul(vertices[edge[0]], scale)
-    second = wp.cw_mul(vertices[edge[1]], scale)
-    a = wp.vec2f(float(first[0]), float(first[1]))
-    b = wp.vec2f(float(second[0]), float(second[1]))
+    first = to_fixed(wp.cw_mul(vertices[edge[0]], scale))
+    second = to_fixed(wp.cw_mul(vertices[edge[1]], scale))
+    # seen from the pixel in which it begins, a line is the same wherever it lies
+    left = first[0] >> 8
+    top = first[1] >> 8
+    a = wp.vec2f(float(first[0] - left * _UNIT), float(first[1] - top * _UNIT)) * _PER_UNIT
+    b = wp.vec2f(float(second[0] - left * _UNIT), float(second[1] - top * _UNIT)) * _PER_UNIT
     reach = half_width + 0.5
-    row = wp.max(int(wp.floor(wp.min(a[1], b[1]) - reach)), band * _BAND)
-    last_row = wp.min(int(wp.ceil(wp.max(a[1], b[1]) + reach)), (band + 1) * _BAND)
-    last_row = wp.min(last_row, coverage_out.shape[0])
+    row = wp.max(int(wp.floor(wp.min(a[1], b[1]) - reach)), band * _BAND - top)
+    last_row = wp.min(int(wp.ceil(wp.max(a[1], b[1]) + reach)), (band + 1) * _BAND - top)
+    last_row = wp.min(last_row, coverage_out.shape[0] - top)
     rise = b[1] - a[1]
     while row < last_row:
         y = float(row) + 0.5
@@ -63,13 +69,13 @@ def cover_edges(
             t1 = wp.clamp((y + reach - a[1]) / rise, 0.0, 1.0)
         x0 = a[0] + t0 * (b[0] - a[0])
         x1 = a[0] + t1 * (b[0] - a[0])
-        column = wp.max(int(wp.floor(wp.min(x0, x1) - reach)), 0)
-        last = wp.min(int(wp.ceil(wp.max(x0, x1) + reach)), coverage_out.shape[1])
+        column = wp.max(int(wp.floor(wp.min(x0, x1) - reach)), -left)
+        last = wp.min(int(wp.ceil(wp.max(x0, x1) + reach)), coverage_out.shape[1] - left)
         while column < last:
             distance = distance_to_segment(wp.vec2f(float(column) + 0.5, y), a, b)
             covered = line_coverage(distance, half_width)
             if covered > 0.0:
-                wp.atomic_max(coverage_out, row, column, covered)
+                wp.atomic_max(coverage_out, top + row, left + column, covered)
             column += 1
         row += 1
 

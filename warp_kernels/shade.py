@@ -2,6 +2,9 @@
 
 A pixel whose samples all lie in one triangle is shaded once, at its centre; a pixel on a border,
 or on one that is seen through a triangle that fades in, is shaded at every sample and averaged.
+The average is of code values: the triangles on either side approximate one picture, so they are
+alike, and it is in code values that their error is measured. Where strong contrasts meet, such as
+ink on paper, a style gives its coverage, which mixes light; see `blend`.
 """
 
 from functools import cache
@@ -9,39 +12,12 @@ from typing import Any
 
 import warp as wp
 
+from warp_kernels.blend import Coat, stack_of
 from warp_kernels.device import Device, Phase
-from warp_kernels.layers import LayerTables, fading_look, opaque_look
-from warp_kernels.scene import Sample, Scene, StyleParameters
+from warp_kernels.layers import LayerTables, Seen, fading_look, opaque_look
+from warp_kernels.scene import Sample, Scene, StyleParameters, offset_of
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
-
-
-@cache
-def _stack(shaders: tuple[Any, ...]) -> Any:
-    """A wp.func that blends the layers of some style shaders, the last on top."""
-    if not shaders:
-
-        @wp.func
-        def paper(
-            scene: Scene, parameters: wp.array(dtype=StyleParameters), sample: Sample
-        ) -> wp.vec3f:
-            """Nothing drawn: black."""
-            return wp.vec3f()
-
-        return paper
-    below, top, layer = _stack(shaders[:-1]), shaders[-1], len(shaders) - 1
-
-    @wp.func
-    def blended(
-        scene: Scene, parameters: wp.array(dtype=StyleParameters), sample: Sample
-    ) -> wp.vec3f:
-        """The layers below, and the top one over them by its opacity."""
-        under = below(scene, parameters, sample)
-        over = top(scene, parameters[wp.static(layer)], sample)
-        color = wp.vec3f(over[0], over[1], over[2])
-        return under + over[3] * (color - under)
-
-    return blended
 
 
 @wp.func
@@ -65,18 +41,36 @@ def is_whole(line: wp.array(dtype=int), first: int, width: int, last: int) -> bo
 
 
 @wp.func
-def to_code_values(color: wp.vec3f) -> wp.vec3ub:
-    """Round a colour to code values."""
-    return wp.vec3ub(
-        wp.uint8(int(wp.clamp(color[0], 0.0, 255.0) + 0.5)),
-        wp.uint8(int(wp.clamp(color[1], 0.0, 255.0) + 0.5)),
-        wp.uint8(int(wp.clamp(color[2], 0.0, 255.0) + 0.5)),
+def code_value(value: float) -> wp.uint8:
+    """Round to a code value."""
+    return wp.uint8(int(wp.clamp(value, 0.0, 255.0) + 0.5))
+
+
+@wp.func
+def opaque_pixel(seen: Seen) -> wp.vec3ub:
+    """Code values of a pixel through which nothing shows."""
+    color = seen.color
+    return wp.vec3ub(code_value(color[0]), code_value(color[1]), code_value(color[2]))
+
+
+@wp.func
+def transparent_pixel(seen: Seen) -> wp.vec4ub:
+    """Code values of a pixel with straight alpha."""
+    color = seen.color / wp.max(seen.opacity, 1.0e-6)
+    return wp.vec4ub(
+        code_value(color[0]),
+        code_value(color[1]),
+        code_value(color[2]),
+        code_value(255.0 * seen.opacity),
     )
 
 
 @cache
-def _shade_kernel(shaders: tuple[Any, ...], samples: int, fades: bool) -> Any:
-    color_at = _stack(shaders)
+def _shade_kernel(coats: tuple[Coat, ...], samples: int, fades: bool) -> Any:
+    is_opaque = any(coat.is_opaque for coat in coats)
+    pixel_of = opaque_pixel if is_opaque else transparent_pixel
+    pixel_type = wp.vec3ub if is_opaque else wp.vec4ub
+    color_at = stack_of(coats)
     look = fading_look(color_at) if fades else opaque_look(color_at)
 
     @wp.kernel(enable_backward=False, module="unique")
@@ -87,10 +81,11 @@ def _shade_kernel(shaders: tuple[Any, ...], samples: int, fades: bool) -> Any:
         parameters: wp.array(dtype=StyleParameters),
         layers: LayerTables,
         triangle_of: wp.array2d(dtype=int),
-        picture_per_sample: wp.vec2f,
+        sample_columns: wp.array(dtype=int),
+        sample_rows: wp.array(dtype=int),
         top: int,
         # Out:
-        canvas_out: wp.array2d(dtype=wp.vec3ub),
+        canvas_out: wp.array2d(dtype=pixel_type),
     ):
         """Shade one row of a band of the output."""
         band_row = span[0][0] + wp.tid()
@@ -109,32 +104,30 @@ def _shade_kernel(shaders: tuple[Any, ...], samples: int, fades: bool) -> Any:
         here = Sample()
         here.row = row
         # as far as a pixel's corner is from its centre, also where a map stretches by a quarter
-        near = wp.length(picture_per_sample) * wp.static(0.625 * samples)
+        near = scene.pixel * 0.884
         column = int(0)
         while column < canvas_out.shape[1]:
             first = column * wp.static(samples)
             here.column = column
             here.triangle = line[first]
-            color = wp.vec3f()
-            clear = float(0.0)
+            seen = Seen()
             if is_whole(line, first, width, wp.static(samples - 1)):
-                centre = wp.static(0.5 * samples)
-                at = wp.vec2f(float(first) + centre, float(first_row) + centre)
-                here.position = wp.cw_mul(at, picture_per_sample)
+                here.place = wp.vec2i(scene.columns[column], scene.rows[row])
+                here.offset = offset_of(here.place, scene.anchors[here.triangle])
                 seen = look(scene, parameters, layers, here)
-                color = wp.vec3f(seen[0], seen[1], seen[2])
-                clear = seen[3]
-            if clear < near:
-                color = wp.vec3f()
+            if seen.clear < near:
+                seen = Seen()
                 for i in range(wp.static(samples)):
                     for j in range(wp.static(samples)):
                         here.triangle = line[i * width + first + j]
-                        at = wp.vec2f(float(first + j) + 0.5, float(first_row + i) + 0.5)
-                        here.position = wp.cw_mul(at, picture_per_sample)
-                        seen = look(scene, parameters, layers, here)
-                        color += wp.vec3f(seen[0], seen[1], seen[2])
-                color = color * wp.static(1.0 / (samples * samples))
-            canvas_out[row, column] = to_code_values(color)
+                        here.place = wp.vec2i(sample_columns[first + j], sample_rows[first_row + i])
+                        here.offset = offset_of(here.place, scene.anchors[here.triangle])
+                        part = look(scene, parameters, layers, here)
+                        seen.color += part.color
+                        seen.opacity += part.opacity
+                seen.color = seen.color * wp.static(1.0 / (samples * samples))
+                seen.opacity = seen.opacity * wp.static(1.0 / (samples * samples))
+            canvas_out[row, column] = pixel_of(seen)
             column += 1
 
     return shade
@@ -143,14 +136,15 @@ def _shade_kernel(shaders: tuple[Any, ...], samples: int, fades: bool) -> Any:
 def record_shade(
     device: Device,
     *,
-    shaders: tuple[Any, ...],
+    coats: tuple[Coat, ...],
     samples: int,
     scene: Any,
     parameters: wp.array,
     layers: Any,
     fades: bool,
     triangle_of: wp.array,
-    picture_per_sample: tuple[float, float],
+    sample_columns: wp.array,
+    sample_rows: wp.array,
     top: int,
     canvas_out: wp.array,
 ) -> Phase:
@@ -158,17 +152,18 @@ def record_shade(
 
     Args:
         device: Where to run.
-        shaders: The styles' wp.funcs `(Scene, StyleParameters, Sample) -> vec4f` of colour
-            [code values] and opacity [0..1], bottom to top.
+        coats: The styles, bottom to top.
         samples: Samples per output pixel, across and down each.
         scene: What shaders look at, a `Scene`.
-        parameters: One `StyleParameters` per shader.
+        parameters: One `StyleParameters` per style.
         layers: What fading triangles let through, `LayerTables`.
         fades: Whether any triangle fades; else `layers` is not looked at.
         triangle_of: Triangle of every sample of a band, see `gbuffer`.
-        picture_per_sample: Size of a sample in the source picture [px], across and down.
+        sample_columns: Places of the samples of a row [2^-16 px], [columns times samples].
+        sample_rows: The same down, [rows times samples].
         top: The output row with which the band begins.
-        canvas_out: Code values, [rows, columns] vec3ub.
+        canvas_out: Code values, [rows, columns]: vec3ub if a coat is opaque, else vec4ub with
+            straight alpha.
     """
-    inputs = [scene, parameters, layers, triangle_of, wp.vec2f(*picture_per_sample), top]
-    return device.record(_shade_kernel(shaders, samples, fades), inputs, [canvas_out])
+    inputs = [scene, parameters, layers, triangle_of, sample_columns, sample_rows, top]
+    return device.record(_shade_kernel(coats, samples, fades), inputs, [canvas_out])

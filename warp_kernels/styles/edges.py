@@ -5,52 +5,45 @@ from typing import Any, ClassVar
 
 import warp as wp
 
-from warp_kernels.errors import OptionError
-from warp_kernels.scene import Sample, Scene, StyleParameters
+from warp_kernels.scene import Ink, Sample, Scene, StyleParameters
 from warp_kernels.styles.color import parse_color
+from warp_kernels.styles.style import Style
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 
 
 @wp.func
-def edge_color(scene: Scene, parameters: StyleParameters, sample: Sample) -> wp.vec4f:
-    """The line colour, as opaque as lines cover the pixel."""
-    covered = scene.edge_coverage[sample.row, sample.column]
-    return wp.vec4f(parameters[0], parameters[1], parameters[2], covered * parameters[3])
+def edge_color(scene: Scene, parameters: StyleParameters, sample: Sample, below: wp.vec4f) -> Ink:
+    """The line colour where lines cover the pixel."""
+    ink = Ink()
+    ink.color = wp.vec3f(parameters.numbers[0], parameters.numbers[1], parameters.numbers[2])
+    ink.opacity = 1.0
+    ink.coverage = scene.edge_coverage[sample.row, sample.column]
+    return ink
 
 
 @dataclass(frozen=True)
-class Edges:
+class Edges(Style):
     """Anti-aliased edges.
 
     Source: Lawonn & Guenther, Stylized Image Triangulation (2018), Sec. 5, Fig. 6f.
     Deviation: coverage is analytic instead of multi-sampled.
-
-    Raises:
-        OptionError: If a parameter is out of its range.
     """
 
     width: float = field(
-        default=1.0, metadata={"help": "width of the lines [px of the source], 0.1 to 50"}
+        default=1.0,
+        metadata={"help": "width of the lines", "unit": "px of the source", "range": (0.1, 50.0)},
     )
-    color: str = field(default="#222", metadata={"help": "colour, #rgb or #rrggbb"})
-    opacity: float = field(default=1.0, metadata={"help": "0 (invisible) to 1 (opaque)"})
+    color: str = field(default="#222", metadata={"help": "#rgb or #rrggbb", "form": "color"})
 
-    degree: ClassVar[int] = 0
     shader: ClassVar[Any] = edge_color
-
-    def __post_init__(self) -> None:
-        if not 0.1 <= self.width <= 50.0:
-            raise OptionError(f"edges:width={self.width:g}: must lie between 0.1 and 50 px")
-        if not 0.0 <= self.opacity <= 1.0:
-            raise OptionError(f"edges:opacity={self.opacity:g}: must lie between 0 and 1")
-        parse_color(self.color)
+    covers: ClassVar[bool] = False
 
     @property
     def line_width(self) -> float:
         """Width of the lines [px of the picture]."""
         return self.width
 
-    def parameters(self) -> tuple[float, ...]:
-        """Red, green, blue [code values], opacity."""
-        return (*parse_color(self.color), self.opacity)
+    def numbers(self) -> tuple[float, ...]:
+        """Red, green, blue [code values]."""
+        return parse_color(self.color)
