@@ -106,11 +106,13 @@ def texture_at(
         parameters: Says which are the style's.
         image: Number of the image, such as a tone.
         at: Position, right and down; an image is the unit square.
-        footprint: Size of an output pixel there [texels of the finest level].
+        footprint: Size of an output pixel there, as a part of the image's longer side.
         repeats: Whether the image is a tile, else its border goes on for ever.
     """
     last = float(parameters.level_count - 1)
-    detail = wp.clamp(wp.log2(wp.max(footprint, 1.0e-6)), 0.0, last)
+    table = scene.levels[parameters.first_level]
+    texels = footprint * float(wp.max(table[2], table[3]))
+    detail = wp.clamp(wp.log2(wp.max(texels, 1.0e-6)), 0.0, last)
     fine = wp.min(int(detail), wp.max(parameters.level_count - 2, 0))
     part = detail - float(fine)
     value = level_at(scene, parameters.first_level + fine, image, at, repeats)

@@ -9,12 +9,14 @@ from warp_kernels.styles.flat import Flat
 from warp_kernels.styles.gradient import Gradient
 from warp_kernels.styles.source import Source
 from warp_kernels.styles.style import Style
+from warp_kernels.styles.texture import Texture
 
-__all__ = ["STYLES", "Edges", "Flat", "Gradient", "Source", "Style"]
+__all__ = ["STYLES", "Edges", "Flat", "Gradient", "Source", "Style", "Texture"]
 
 STYLES: dict[str, type[Style]] = {
     "edges": Edges,
     "flat": Flat,
     "gradient": Gradient,
     "source": Source,
+    "texture": Texture,
 }
