@@ -11,8 +11,9 @@ from warp_kernels.edge_coverage import BAND, record_edge_coverage
 from warp_kernels.gbuffer import record_gbuffer
 from warp_kernels.layers import Layers, LayerTables
 from warp_kernels.paint import Paint, shapes_of, to_places
+from warp_kernels.prepare import record_prepare
 from warp_kernels.raster import MAX_SIDE
-from warp_kernels.scene import FRACTION_BITS, Scene, StyleParameters
+from warp_kernels.scene import FRACTION_BITS, Numbers, Scene, StyleParameters
 from warp_kernels.shade import record_shade
 from warp_kernels.source_picture import reduced, step_for
 from warp_kernels.styles import Style
@@ -49,6 +50,7 @@ class Canvas:
         self.output = output
         self.samples = max(1, min(SAMPLES, MAX_SIDE // max(output)))
         self._coats = tuple(Coat(style.shader, style.blend, style.is_opaque) for style in styles)
+        self._prepares = {i: s.prepare for i, s in enumerate(styles) if s.prepare is not None}
         width, height = output
         columns = width * self.samples
         self._band = max(1, min(height, BAND_SAMPLES // (columns * self.samples)))
@@ -88,6 +90,7 @@ class Canvas:
         self._steady["texels"] = self._filled(texels, wp.uint8)
         self._steady["levels"] = self._filled(levels, wp.vec4i)
         packed = np.zeros(max(1, len(styles)), dtype=StyleParameters.numpy_dtype())
+        packed["row"] = np.arange(len(packed))
         for row, style, (first, count) in zip(packed, styles, ranges, strict=False):
             numbers = style.numbers()
             row["numbers"].reshape(-1)[: len(numbers)] = numbers
@@ -136,7 +139,9 @@ class Canvas:
         self._write_paint(paint)
         if source is not None and self._steady["source"].size > 1:
             self.device.write(self._steady["source"], reduced(source, self._steady["source_step"]))
-        phases = []
+        for preparing in self._preparing:
+            preparing.resize(len(paint.colors))
+        phases = list(self._preparing)
         if self._line_width:
             self.device.clear(self._coverage)
             self._edge_drawing.resize(-(-self.output[1] // BAND), per_element=len(edges))
@@ -192,6 +197,7 @@ class Canvas:
             "sides": self._empty((layers, 2), wp.vec2f),
             "incircles": self._empty(layers, wp.vec3f),
             "hashes": self._empty(layers, wp.uint32),
+            "prepared": self._empty((len(self._parameters), layers), Numbers),
         }
         tables = LayerTables()
         tables.weights = self._empty(layers, float)
@@ -211,6 +217,24 @@ class Canvas:
             half_width=0.5 * self._line_width * self._scale[1],
             coverage_out=self._coverage,
         )
+        self._preparing = [
+            record_prepare(
+                self.device,
+                prepare=prepare,
+                style=style,
+                scene=self._scene(),
+                parameters=self._parameters,
+                prepared_out=self._tables["prepared"],
+            )
+            for style, prepare in self._prepares.items()
+        ]
+
+    def _scene(self) -> Any:
+        """Everything that shaders look at."""
+        scene = Scene()
+        for name, value in {**self._steady, **self._tables}.items():
+            setattr(scene, name, value)
+        return scene
 
     @property
     def _scale(self) -> tuple[float, float]:
@@ -232,9 +256,6 @@ class Canvas:
     def _record_band(self, top: int, *, fades: bool) -> tuple[Phase, Phase]:
         """Record what fills and what shades the band that begins with output row `top`."""
         scale = self._scale
-        scene = Scene()
-        for name, value in {**self._steady, **self._tables}.items():
-            setattr(scene, name, value)
         filling = record_gbuffer(
             self.device,
             vertices=self._vertices,
@@ -247,7 +268,7 @@ class Canvas:
             self.device,
             coats=self._coats,
             samples=self.samples,
-            scene=scene,
+            scene=self._scene(),
             parameters=self._parameters,
             layers=self._layers,
             fades=fades,

@@ -27,6 +27,8 @@ class StyleParameters:
     """Number of its texture's finest level in `Scene.levels`."""
     level_count: int
     """Levels of its texture, 0 if it has none."""
+    row: int
+    """Its row of `Scene.prepared`."""
 
 
 @wp.struct
@@ -50,6 +52,8 @@ class Scene:
     """Incentre from corner 0 and the inradius [px of the picture], [T]."""
     hashes: wp.array(dtype=wp.uint32)
     """A number without order for every triangle that stays with it from frame to frame, [T]."""
+    prepared: wp.array2d(dtype=Numbers)
+    """What styles worked out about every triangle beforehand, [styles, T]."""
     edge_coverage: wp.array2d(dtype=float)
     """Part of every output pixel covered by drawn edges, [rows, columns]; may be empty."""
     source: wp.array2d(dtype=wp.vec3ub)

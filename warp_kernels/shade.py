@@ -1,7 +1,8 @@
 """One generic shader: a stack of styles, bottom to top, blended for every output pixel.
 
-A pixel whose samples all lie in one triangle is shaded once, at its centre; a pixel on a border,
-or on one that is seen through a triangle that fades in, is shaded at every sample and averaged.
+A pixel whose samples all lie in one triangle is shaded once, at its centre; a pixel on a border is
+shaded once for each of its triangles, in the middle of the samples that lie in it, and where one
+fades in, which hides borders beneath, at every sample.
 The average is of code values: the triangles on either side approximate one picture, so they are
 alike, and it is in code values that their error is measured. Where strong contrasts meet, such as
 ink on paper, a style gives its coverage, which mixes light; see `blend`.
@@ -65,6 +66,104 @@ def transparent_pixel(seen: Seen) -> wp.vec4ub:
     )
 
 
+@wp.func
+def sample_at(scene: Scene, pixel: Sample, triangle: int, x: int, y: int) -> Sample:
+    """A point of a pixel, in one of the triangles there, at a place [2^-16 px]."""
+    here = Sample()
+    here.row = pixel.row
+    here.column = pixel.column
+    here.triangle = triangle
+    here.place = wp.vec2i(x, y)
+    here.offset = offset_of(here.place, scene.anchors[triangle])
+    return here
+
+
+@cache
+def _each_triangle(look: Any, samples: int) -> Any:
+    """A wp.func that sees every triangle of a pixel once, in the middle of its samples."""
+
+    @wp.func
+    def mixed(
+        scene: Scene,
+        parameters: wp.array(dtype=StyleParameters),
+        layers: LayerTables,
+        line: wp.array(dtype=int),
+        columns: wp.array(dtype=int),
+        rows: wp.array(dtype=int),
+        pixel: Sample,
+    ) -> Seen:
+        """The mean over the triangles by their numbers of samples."""
+        width = line.shape[0] / wp.static(samples)
+        first = pixel.column * wp.static(samples)
+        top = pixel.row * wp.static(samples)
+        seen = Seen()
+        left = int(wp.static((1 << samples * samples) - 1))
+        while left != 0:
+            count = int(0)
+            triangle = int(0)
+            x = int(0)
+            y = int(0)
+            for i in range(wp.static(samples)):
+                for j in range(wp.static(samples)):
+                    bit = wp.static(1) << (i * wp.static(samples) + j)
+                    other = line[i * width + first + j]
+                    if count == 0 and (left & bit) != 0:
+                        triangle = other
+                    if (left & bit) != 0 and other == triangle:
+                        left = left ^ bit
+                        count += 1
+                        # from the first sample: sums of whole places would not fit
+                        x += columns[first + j] - columns[first]
+                        y += rows[top + i] - rows[top]
+            here = sample_at(
+                scene, pixel, triangle, columns[first] + x / count, rows[top] + y / count
+            )
+            part = look(scene, parameters, layers, here)
+            seen.color += float(count) * part.color
+            seen.opacity += float(count) * part.opacity
+        seen.color = seen.color * wp.static(1.0 / (samples * samples))
+        seen.opacity = seen.opacity * wp.static(1.0 / (samples * samples))
+        return seen
+
+    return mixed
+
+
+@cache
+def _each_sample(look: Any, samples: int) -> Any:
+    """A wp.func that sees every sample of a pixel: beneath one triangle there may be several."""
+
+    @wp.func
+    def mixed(
+        scene: Scene,
+        parameters: wp.array(dtype=StyleParameters),
+        layers: LayerTables,
+        line: wp.array(dtype=int),
+        columns: wp.array(dtype=int),
+        rows: wp.array(dtype=int),
+        pixel: Sample,
+    ) -> Seen:
+        """The mean over the samples."""
+        width = line.shape[0] / wp.static(samples)
+        first = pixel.column * wp.static(samples)
+        top = pixel.row * wp.static(samples)
+        seen = Seen()
+        number = int(0)
+        while number < wp.static(samples * samples):
+            i = number / wp.static(samples)
+            j = number % wp.static(samples)
+            triangle = line[i * width + first + j]
+            here = sample_at(scene, pixel, triangle, columns[first + j], rows[top + i])
+            part = look(scene, parameters, layers, here)
+            seen.color += part.color
+            seen.opacity += part.opacity
+            number += 1
+        seen.color = seen.color * wp.static(1.0 / (samples * samples))
+        seen.opacity = seen.opacity * wp.static(1.0 / (samples * samples))
+        return seen
+
+    return mixed
+
+
 @cache
 def _shade_kernel(coats: tuple[Coat, ...], samples: int, fades: bool) -> Any:
     is_opaque = any(coat.is_opaque for coat in coats)
@@ -72,6 +171,7 @@ def _shade_kernel(coats: tuple[Coat, ...], samples: int, fades: bool) -> Any:
     pixel_type = wp.vec3ub if is_opaque else wp.vec4ub
     color_at = stack_of(coats)
     look = fading_look(color_at) if fades else opaque_look(color_at)
+    mixed = _each_sample(look, samples) if fades else _each_triangle(look, samples)
 
     @wp.kernel(enable_backward=False, module="unique")
     def shade(
@@ -92,7 +192,6 @@ def _shade_kernel(coats: tuple[Coat, ...], samples: int, fades: bool) -> Any:
         if band_row >= span[0][1]:
             return
         row = top + band_row
-        first_row = row * wp.static(samples)
         width = triangle_of.shape[1]
         # a plain array of the row's samples: its index is never negative and its stride is known
         pitch = wp.uint64(width) * wp.uint64(wp.static(4 * samples))
@@ -116,17 +215,7 @@ def _shade_kernel(coats: tuple[Coat, ...], samples: int, fades: bool) -> Any:
                 here.offset = offset_of(here.place, scene.anchors[here.triangle])
                 seen = look(scene, parameters, layers, here)
             if seen.clear < near:
-                seen = Seen()
-                for i in range(wp.static(samples)):
-                    for j in range(wp.static(samples)):
-                        here.triangle = line[i * width + first + j]
-                        here.place = wp.vec2i(sample_columns[first + j], sample_rows[first_row + i])
-                        here.offset = offset_of(here.place, scene.anchors[here.triangle])
-                        part = look(scene, parameters, layers, here)
-                        seen.color += part.color
-                        seen.opacity += part.opacity
-                seen.color = seen.color * wp.static(1.0 / (samples * samples))
-                seen.opacity = seen.opacity * wp.static(1.0 / (samples * samples))
+                seen = mixed(scene, parameters, layers, line, sample_columns, sample_rows, here)
             canvas_out[row, column] = pixel_of(seen)
             column += 1
 

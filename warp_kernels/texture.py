@@ -9,6 +9,9 @@ from warp_kernels.scene import Scene, StyleParameters
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 
+LINE = 64
+"""Every level begins at a whole multiple of so many bytes: the processor fetches so many at once."""
+
 
 @dataclass(frozen=True, eq=False)
 class Texture:
@@ -45,15 +48,16 @@ def pack(textures: list[Texture | None]) -> tuple[np.ndarray, np.ndarray, list[t
         `Scene.texels` [N] uint8, `Scene.levels` [L, 4], and for every style the number of its
         first level and of its levels.
     """
-    texels, table, ranges = [np.zeros(1, np.uint8)], [(0, 1, 1, 1)], []
-    begin = 1
+    texels, table, ranges = [np.zeros(LINE, np.uint8)], [(0, 1, 1, 1)], []
+    begin = LINE
     for texture in textures:
         levels = () if texture is None else texture.levels
         ranges.append((len(table), len(levels)))
         for level in levels:
-            texels.append(level.reshape(-1))
+            padding = -level.size % LINE
+            texels.append(np.pad(level.reshape(-1), (0, padding)))
             table.append((begin, *level.shape))
-            begin += level.size
+            begin += level.size + padding
     return np.concatenate(texels), np.array(table), ranges
 
 

@@ -4,9 +4,11 @@ A style is a file with a frozen dataclass of parameters, see `Style`, and a wp.f
 new one is a file and a line here.
 """
 
+from warp_kernels.styles.crosshatching import Crosshatching
 from warp_kernels.styles.edges import Edges
 from warp_kernels.styles.flat import Flat
 from warp_kernels.styles.gradient import Gradient
+from warp_kernels.styles.hatching import Hatching
 from warp_kernels.styles.source import Source
 from warp_kernels.styles.style import Style
 from warp_kernels.styles.texture import Texture
@@ -14,9 +16,11 @@ from warp_kernels.styles.texture import Texture
 __all__ = ["STYLES", "Edges", "Flat", "Gradient", "Source", "Style", "Texture"]
 
 STYLES: dict[str, type[Style]] = {
+    "crosshatching": Crosshatching,
     "edges": Edges,
     "flat": Flat,
     "gradient": Gradient,
+    "hatching": Hatching,
     "source": Source,
     "texture": Texture,
 }

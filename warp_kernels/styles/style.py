@@ -44,6 +44,9 @@ class Style:
     shader: ClassVar[Any]
     """A wp.func `(Scene, StyleParameters, Sample, below: vec4f) -> Ink`; `below` is the colour
     [code values] and the opacity of what lies below."""
+    prepare: ClassVar[Any] = None
+    """A wp.func `(Scene, StyleParameters, triangle) -> Numbers` that fills the style's row of
+    `Scene.prepared` before anything is shaded; None if the shader does not look there."""
     degree: ClassVar[int] = 0
     """Least degree of the colour polynomial that the shader needs."""
     covers: ClassVar[bool] = True

@@ -110,9 +110,7 @@ def tonal_art_map(drawing: Drawing, *, width: float, grain: float, seed: int) ->
         amount = float(covered.sum(dtype=np.float64)) / paper.size
         while inked + amount >= len(tones) * TONE_STEP:
             tone = paper.copy()
-            tone[texels] = under - covered * np.float32(
-                (len(tones) * TONE_STEP - inked) / amount
-            )
+            tone[texels] = under - covered * np.float32((len(tones) * TONE_STEP - inked) / amount)
             tones.append(tone)
             if len(tones) == TONES:
                 return np.stack(tones).reshape(TONES, SIDE, SIDE)
