@@ -10,8 +10,9 @@ from warp_kernels.device import Device, Phase
 from warp_kernels.gbuffer import record_gbuffer
 from warp_kernels.layers import Layers, LayerTables
 from warp_kernels.paint import Paint, shapes_of, to_places
+from warp_kernels.prepare import record_prepare
 from warp_kernels.raster import MAX_SIDE
-from warp_kernels.scene import FRACTION_BITS, Scene, StyleParameters
+from warp_kernels.scene import FIXED, FRACTION_BITS, Numbers, Scene, StyleParameters
 from warp_kernels.shade import record_shade
 from warp_kernels.source_picture import reduced, step_for
 from warp_kernels.styles import Style
@@ -47,7 +48,10 @@ class Canvas:
         self.picture = picture
         self.output = output
         self.samples = max(1, min(SAMPLES, MAX_SIDE // max(output)))
-        self._coats = tuple(Coat(style.shader, style.blend, style.is_opaque) for style in styles)
+        self._coats = tuple(
+            Coat(style.shader, style.blend, style.is_opaque, style.is_even) for style in styles
+        )
+        self._prepares = {i: s.prepare for i, s in enumerate(styles) if s.prepare is not None}
         width, height = output
         columns = width * self.samples
         self._band = max(1, min(height, BAND_SAMPLES // (columns * self.samples)))
@@ -55,8 +59,6 @@ class Canvas:
         is_opaque = any(coat.is_opaque for coat in self._coats)
         self._pixels = device.empty((height, width), wp.vec3ub if is_opaque else wp.vec4ub)
         self._curved = device.empty(1, int)
-        self._sample_columns = self._filled(centres(picture[0], columns), int)
-        self._sample_rows = self._filled(centres(picture[1], height * self.samples), int)
         self._steady = self._steady_scene(needs_source=any(s.needs_source for s in styles))
         self._parameters = self._parameters_of(styles, textures)
         self._allocate(vertices=512, triangles=1024, layers=1024, links=1)
@@ -72,6 +74,8 @@ class Canvas:
             "source_step": step,
             "columns": self._filled(centres(width, self.output[0]), int),
             "rows": self._filled(centres(height, self.output[1]), int),
+            "pixel": float(np.sqrt((0.5 / np.square(self._scale)).sum())),
+            "sample_size": wp.vec2f(*(FIXED / (scale * self.samples) for scale in self._scale)),
         }
 
     def _parameters_of(self, styles: tuple[Style, ...], textures: list[Texture | None]) -> wp.array:
@@ -80,6 +84,7 @@ class Canvas:
         self._steady["texels"] = self._filled(texels, wp.uint8)
         self._steady["levels"] = self._filled(levels, wp.vec4i)
         packed = np.zeros(max(1, len(styles)), dtype=StyleParameters.numpy_dtype())
+        packed["row"] = np.arange(len(packed))
         for row, style, (first, count) in zip(packed, styles, ranges, strict=False):
             numbers = style.numbers()
             row["numbers"].reshape(-1)[: len(numbers)] = numbers
@@ -118,10 +123,13 @@ class Canvas:
             self._write_layers(layers)
         self.device.write(self._vertices, vertices)
         self.device.write(self._triangles, triangles)
-        self._write_paint(paint)
+        is_even = all(coat.is_even for coat in self._coats)
+        self._write_paint(paint, shapes=not is_even or layers is not None)
         if source is not None and self._steady["source"].size > 1:
             self.device.write(self._steady["source"], reduced(source, self._steady["source_step"]))
-        phases = []
+        for preparing in self._preparing:
+            preparing.resize(len(paint.colors))
+        phases = list(self._preparing)
         for top, filling, shading in self._bands(fades=layers is not None):
             filling.resize(len(triangles))
             shading.resize(min(self._band, self.output[1] - top))
@@ -129,16 +137,19 @@ class Canvas:
         self.device.run(phases)
         return self.device.read(self._pixels, self.output[1])
 
-    def _write_paint(self, paint: Paint) -> None:
-        """Hand over shapes and colours."""
-        write, tables, shapes = self.device.write, self._tables, shapes_of(paint.corners)
-        for name in ("colors", "gradients", "hashes"):
-            write(tables[name], getattr(paint, name))
-        for name in ("anchors", "sides", "incircles", "lines"):
-            write(tables[name], getattr(shapes, name))
+    def _write_paint(self, paint: Paint, *, shapes: bool) -> None:
+        """Hand over colours, and shapes if they are looked at."""
+        write, tables = self.device.write, self._tables
+        write(tables["colors"], paint.colors)
         write(self._curved, np.array([0 if paint.curvatures is None else 1]))
         if paint.curvatures is not None:
             write(tables["curvatures"], paint.curvatures)
+        if shapes:
+            found = shapes_of(paint.corners)
+            for name in ("anchors", "sides", "incircles", "lines"):
+                write(tables[name], getattr(found, name))
+            write(tables["gradients"], paint.gradients)
+            write(tables["hashes"], paint.hashes)
 
     def _write_layers(self, layers: Layers) -> None:
         """Hand over what shows through."""
@@ -173,6 +184,7 @@ class Canvas:
             "incircles": self._empty(layers, wp.vec3f),
             "lines": self._empty(layers, wp.mat33f),
             "hashes": self._empty(layers, wp.uint32),
+            "prepared": self._empty((len(self._parameters), layers), Numbers),
         }
         tables = LayerTables()
         tables.weights = self._empty(layers, float)
@@ -182,6 +194,24 @@ class Canvas:
         tables.links = self._empty(links, int)
         self._layers = tables
         self._recorded: dict[bool, list[tuple[int, Phase, Phase]]] = {}
+        self._preparing = [
+            record_prepare(
+                self.device,
+                prepare=prepare,
+                style=style,
+                scene=self._scene(),
+                parameters=self._parameters,
+                prepared_out=self._tables["prepared"],
+            )
+            for style, prepare in self._prepares.items()
+        ]
+
+    def _scene(self) -> Any:
+        """Everything that shaders look at."""
+        scene = Scene()
+        for name, value in {**self._steady, **self._tables}.items():
+            setattr(scene, name, value)
+        return scene
 
     @property
     def _scale(self) -> tuple[float, float]:
@@ -203,9 +233,6 @@ class Canvas:
     def _record_band(self, top: int, *, fades: bool) -> tuple[Phase, Phase]:
         """Record what fills and what shades the band that begins with output row `top`."""
         scale = self._scale
-        scene = Scene()
-        for name, value in {**self._steady, **self._tables}.items():
-            setattr(scene, name, value)
         filling = record_gbuffer(
             self.device,
             vertices=self._vertices,
@@ -218,14 +245,11 @@ class Canvas:
             self.device,
             coats=self._coats,
             samples=self.samples,
-            scene=scene,
+            scene=self._scene(),
             parameters=self._parameters,
             layers=self._layers,
             fades=fades,
             triangle_of=self._triangle_of,
-            sample_columns=self._sample_columns,
-            sample_rows=self._sample_rows,
-            pixel=float(np.sqrt((0.5 / np.square(scale)).sum())),
             top=top,
             canvas_out=self._pixels,
         )

@@ -119,7 +119,6 @@ def fading_look(color_at: Any) -> Any:
     Args:
         color_at: A wp.func `(Scene, parameters, Sample) -> vec4f` of colour and opacity.
     """
-    plain = opaque_look(color_at)
 
     @wp.func
     def look(
@@ -129,13 +128,8 @@ def fading_look(color_at: Any) -> Any:
         sample: Sample,
     ) -> Seen:
         """Colour, and the distance from the nearest border beneath [px]."""
-        seen = plain(scene, parameters, layers, sample)
-        weight = layers.weights[sample.triangle]
-        if weight == 1.0:
-            return seen
-        seen.color = weight * seen.color
-        seen.opacity = weight * seen.opacity
-        rest = 1.0 - weight
+        seen = Seen()
+        seen.clear = FAR
         here = Sample()
         here.triangle = sample.triangle
         here.offset = sample.offset
@@ -143,17 +137,19 @@ def fading_look(color_at: Any) -> Any:
         here.extent = sample.extent
         here.row = sample.row
         here.column = sample.column
-        while weight < 1.0:
-            place = departed(layers, here)
-            here.triangle = layer_beneath(scene, layers, here.triangle, place)
-            here.offset = offset_of(place, scene.anchors[here.triangle])
-            depth = depth_inside(scene.lines[here.triangle], here.offset)
-            seen.clear = wp.min(seen.clear, depth)
+        rest = float(1.0)
+        while rest > 0.0:
+            color = color_at(scene, parameters, here)
             weight = layers.weights[here.triangle]
-            beneath = plain(scene, parameters, layers, here)
-            seen.color += rest * weight * beneath.color
-            seen.opacity += rest * weight * beneath.opacity
+            seen.color += rest * weight * color[3] * wp.vec3f(color[0], color[1], color[2])
+            seen.opacity += rest * weight * color[3]
             rest *= 1.0 - weight
+            if weight < 1.0:
+                place = departed(layers, here)
+                here.triangle = layer_beneath(scene, layers, here.triangle, place)
+                here.offset = offset_of(place, scene.anchors[here.triangle])
+                depth = depth_inside(scene.lines[here.triangle], here.offset)
+                seen.clear = wp.min(seen.clear, depth)
         return seen
 
     return look

@@ -27,6 +27,8 @@ class StyleParameters:
     """Number of its texture's finest level in `Scene.levels`."""
     level_count: int
     """Levels of its texture, 0 if it has none."""
+    row: int
+    """Its row of `Scene.prepared`."""
 
 
 @wp.struct
@@ -53,6 +55,8 @@ class Scene:
     the side to the inside, (x, y) seen from corner 0 [px of the picture], [T]."""
     hashes: wp.array(dtype=wp.uint32)
     """A number without order for every triangle that stays with it from frame to frame, [T]."""
+    prepared: wp.array2d(dtype=Numbers)
+    """What styles worked out about every triangle beforehand, [styles, T]."""
     source: wp.array2d(dtype=wp.vec3ub)
     """The source picture, smaller by the factor `source_step`; empty unless a style needs it."""
     source_step: int
@@ -65,6 +69,10 @@ class Scene:
     """Place of the centre of every output column [2^-16 px], [columns]."""
     rows: wp.array(dtype=int)
     """The same of every output row, [rows]."""
+    pixel: float
+    """Size of an output pixel [px of the picture]."""
+    sample_size: wp.vec2f
+    """Width and height of the parts of an output pixel that are told apart [2^-16 px]."""
 
 
 @wp.struct

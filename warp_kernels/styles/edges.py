@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 
 import warp as wp
 
-from warp_kernels.scene import Ink, Sample, Scene, StyleParameters, depths
+from warp_kernels.scene import Ink, Numbers, Sample, Scene, StyleParameters
 from warp_kernels.styles.color import parse_color
 from warp_kernels.styles.style import Style
 from warp_kernels.triangle_frame import line_coverage, smooth_rise
@@ -20,28 +20,48 @@ def line_strength(side: wp.vec2f, fade: float) -> float:
 
 
 @wp.func
+def prepare_edges(scene: Scene, parameters: StyleParameters, triangle: int) -> Numbers:
+    """The sides as `Scene.lines` has them, and how strong the lines along them are."""
+    lines = scene.lines[triangle]
+    base = scene.sides[triangle, 0]
+    last = scene.sides[triangle, 1]
+    fade = parameters.numbers[4]
+    result = Numbers()
+    for i in range(3):
+        for j in range(3):
+            result[3 * i + j] = lines[i, j]
+        result[9 + i] = 1.0
+    if fade > 0.0:
+        result[9] = line_strength(base, fade)
+        result[10] = line_strength(last - base, fade)
+        result[11] = line_strength(last, fade)
+    return result
+
+
+@wp.func
 def edge_color(scene: Scene, parameters: StyleParameters, sample: Sample, below: wp.vec4f) -> Ink:
     """The line colour where lines cover the point.
 
     Only the triangle's own sides are looked at: whatever lies outside lies behind one of them.
     """
-    t = sample.triangle
+    n = scene.prepared[parameters.row, sample.triangle]
+    x = sample.offset[0]
+    y = sample.offset[1]
     half_width = parameters.numbers[3]
-    away = depths(scene.lines[t], sample.offset)
+    first = n[0] * x + n[1] * y + n[2]
+    second = n[3] * x + n[4] * y + n[5]
+    third = n[6] * x + n[7] * y + n[8]
     ink = Ink()
-    ink.color = wp.vec3f(parameters.numbers[0], parameters.numbers[1], parameters.numbers[2])
-    ink.opacity = 1.0
-    ink.coverage = line_coverage(wp.min(away), half_width, sample.extent)
-    fade = parameters.numbers[4]
-    if fade > 0.0 and ink.coverage > 0.0:
-        base = scene.sides[t, 0]
-        last = scene.sides[t, 1]
-        strengths = wp.vec3f(
-            line_strength(base, fade), line_strength(last - base, fade), line_strength(last, fade)
+    if wp.min(wp.min(first, second), third) < half_width + 0.5 * sample.extent:
+        ink.color = wp.vec3f(parameters.numbers[0], parameters.numbers[1], parameters.numbers[2])
+        ink.opacity = 1.0
+        ink.coverage = wp.max(
+            n[9] * line_coverage(first, half_width, sample.extent),
+            wp.max(
+                n[10] * line_coverage(second, half_width, sample.extent),
+                n[11] * line_coverage(third, half_width, sample.extent),
+            ),
         )
-        for c in range(3):
-            strengths[c] *= line_coverage(away[c], half_width, sample.extent)
-        ink.coverage = wp.max(strengths)
     return ink
 
 
@@ -68,6 +88,7 @@ class Edges(Style):
     )
 
     shader: ClassVar[Any] = edge_color
+    prepare: ClassVar[Any] = prepare_edges
     covers: ClassVar[bool] = False
 
     def numbers(self) -> tuple[float, ...]:

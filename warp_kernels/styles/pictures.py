@@ -36,7 +36,7 @@ def averaged(samples: np.ndarray) -> np.ndarray:
 def cushion() -> np.ndarray:
     """Raised in the middle, dark along the seams: brightness, 0 to 1, [rows, columns]."""
     height = 27.0 * np.prod(np.maximum(weights(), 0.0), axis=0)
-    return averaged(0.2 + 0.37 * height**0.6)
+    return averaged(0.24 + 0.36 * height**0.6)
 
 
 @cache
@@ -50,7 +50,7 @@ def nested_triangles() -> np.ndarray:
         depth += (place >= 0).all(axis=0)
     share = depth / NESTED
     stripes = np.where(depth % 2 == 0, -0.07, 0.07)
-    return averaged(0.37 + 0.24 * share + stripes)
+    return averaged(0.42 + 0.2 * share + stripes)
 
 
 PICTURES: dict[str, Callable[[], np.ndarray]] = {

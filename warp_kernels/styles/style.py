@@ -44,10 +44,15 @@ class Style:
     shader: ClassVar[Any]
     """A wp.func `(Scene, StyleParameters, Sample, below: vec4f) -> Ink`; `below` is the colour
     [code values] and the opacity of what lies below."""
+    prepare: ClassVar[Any] = None
+    """A wp.func `(Scene, StyleParameters, triangle) -> Numbers` that fills the style's row of
+    `Scene.prepared` before anything is shaded; None if the shader does not look there."""
     degree: ClassVar[int] = 0
     """Least degree of the colour polynomial that the shader needs."""
     covers: ClassVar[bool] = True
     """Whether its ink is opaque everywhere."""
+    is_even: ClassVar[bool] = False
+    """Whether its ink is the same all over a triangle: borders are then drawn in less time."""
     needs_source: ClassVar[bool] = False
     """Whether the shader looks at the source picture."""
 
