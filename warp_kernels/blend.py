@@ -16,7 +16,7 @@ from typing import Any
 
 import warp as wp
 
-from warp_kernels.scene import Sample, Scene, StyleParameters
+from warp_kernels.scene import FAR, Sample, Scene, StyleParameters
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 
@@ -33,6 +33,8 @@ class Coat:
     """Its blend mode, a key of `BLENDS`."""
     is_opaque: bool
     """Whether nothing below it shows or is left transparent."""
+    covers: bool
+    """Whether it leaves no gaps."""
     is_even: bool
     """Whether its ink is the same all over a triangle."""
 
@@ -92,16 +94,42 @@ def to_code(light: wp.vec3f) -> wp.vec3f:
 
 
 @wp.func
+def painted_all_over(below: wp.vec4f, painted: wp.vec4f, coverage: float) -> wp.vec4f:
+    """What is painted, by a style that leaves no gaps."""
+    return painted
+
+
+@wp.func
+def inked_on_opaque(below: wp.vec4f, painted: wp.vec4f, coverage: float) -> wp.vec4f:
+    """What is painted on a part of the area, what lies below on the rest; nothing shows through.
+
+    Without a branch: where a line runs cannot be guessed.
+    """
+    under = to_light(wp.vec3f(below[0], below[1], below[2]))
+    over = to_light(wp.vec3f(painted[0], painted[1], painted[2]))
+    color = to_code(under + coverage * (over - under))
+    return wp.vec4f(color[0], color[1], color[2], 1.0)
+
+
+@wp.func
 def inked(below: wp.vec4f, painted: wp.vec4f, coverage: float) -> wp.vec4f:
-    """What is painted on a part of the area, what lies below on the rest; colour and opacity."""
+    """The same where something may show through: colour and opacity."""
     opacity = wp.lerp(below[3], painted[3], coverage)
-    if opacity <= 0.0:
-        return below
     under = to_light(wp.vec3f(below[0], below[1], below[2]))
     over = to_light(wp.vec3f(painted[0], painted[1], painted[2]))
     light = (1.0 - coverage) * below[3] * under + coverage * painted[3] * over
-    color = to_code(light / opacity)
+    color = to_code(light / wp.max(opacity, 1.0e-6))
     return wp.vec4f(color[0], color[1], color[2], opacity)
+
+
+@wp.struct
+class Coated:
+    """What some coats make of a point."""
+
+    color: wp.vec4f
+    """Colour [code values] and opacity."""
+    calm: float
+    """How far to the right of the point they make the same of all, see `Ink` [px]."""
 
 
 @wp.func
@@ -112,7 +140,7 @@ def lay_on_nothing(below: wp.vec4f, color: wp.vec3f, opacity: float) -> wp.vec4f
 
 @cache
 def stack_of(coats: tuple[Coat, ...]) -> Any:
-    """A wp.func `(Scene, array of StyleParameters, Sample) -> vec4f` of colour and opacity.
+    """A wp.func `(Scene, array of StyleParameters, Sample) -> Coated`.
 
     Args:
         coats: Bottom to top; below the lowest everything is transparent.
@@ -122,31 +150,33 @@ def stack_of(coats: tuple[Coat, ...]) -> Any:
         @wp.func
         def nothing(
             scene: Scene, parameters: wp.array(dtype=StyleParameters), sample: Sample
-        ) -> wp.vec4f:
+        ) -> Coated:
             """Nothing drawn: transparent."""
-            return wp.vec4f()
+            coated = Coated()
+            coated.calm = FAR
+            return coated
 
         return nothing
     top, layer = coats[-1].shader, len(coats) - 1
     below = stack_of(coats[:-1])
-    lay = lay_on_nothing
-    if len(coats) > 1:
-        lay = _laid(coats[-1].blend, any(coat.is_opaque for coat in coats[:-1]))
+    on_opaque = any(coat.is_opaque for coat in coats[:-1])
+    lay = _laid(coats[-1].blend, on_opaque) if len(coats) > 1 else lay_on_nothing
+    cover = inked_on_opaque if on_opaque else inked
+    if coats[-1].covers:
+        cover = painted_all_over
 
     @wp.func
     def blended(
         scene: Scene, parameters: wp.array(dtype=StyleParameters), sample: Sample
-    ) -> wp.vec4f:
+    ) -> Coated:
         """The coats below, and the top one over them."""
-        under = below(scene, parameters, sample)
+        coated = below(scene, parameters, sample)
+        under = coated.color
         own = parameters[wp.static(layer)]
         ink = top(scene, own, sample, under)
-        if ink.coverage <= 0.0:
-            return under
-        painted = lay(under, ink.color, ink.opacity * own.opacity)
-        if ink.coverage >= 1.0:
-            return painted
-        return inked(under, painted, ink.coverage)
+        coated.calm = wp.min(coated.calm, ink.calm)
+        coated.color = cover(under, lay(under, ink.color, ink.opacity * own.opacity), ink.coverage)
+        return coated
 
     return blended
 

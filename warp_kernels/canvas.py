@@ -13,7 +13,7 @@ from warp_kernels.paint import Paint, shapes_of, to_places
 from warp_kernels.prepare import record_prepare
 from warp_kernels.raster import MAX_SIDE
 from warp_kernels.scene import FIXED, FRACTION_BITS, Numbers, Scene, StyleParameters
-from warp_kernels.shade import record_shade
+from warp_kernels.shade import parts_of_a_pixel, record_shade
 from warp_kernels.source_picture import reduced, step_for
 from warp_kernels.styles import Style
 from warp_kernels.texture import Texture, pack
@@ -49,7 +49,8 @@ class Canvas:
         self.output = output
         self.samples = max(1, min(SAMPLES, MAX_SIDE // max(output)))
         self._coats = tuple(
-            Coat(style.shader, style.blend, style.is_opaque, style.is_even) for style in styles
+            Coat(style.shader, style.blend, style.is_opaque, style.covers, style.is_even)
+            for style in styles
         )
         self._prepares = {i: s.prepare for i, s in enumerate(styles) if s.prepare is not None}
         width, height = output
@@ -75,6 +76,7 @@ class Canvas:
             "columns": self._filled(centres(width, self.output[0]), int),
             "rows": self._filled(centres(height, self.output[1]), int),
             "pixel": float(np.sqrt((0.5 / np.square(self._scale)).sum())),
+            "parts": self._filled(parts_of_a_pixel(self.samples), wp.vec4f),
             "sample_size": wp.vec2f(*(FIXED / (scale * self.samples) for scale in self._scale)),
         }
 

@@ -14,12 +14,9 @@ from typing import Any
 import numpy as np
 import warp as wp
 
-from warp_kernels.scene import FIXED, Sample, Scene, StyleParameters, depth_inside, offset_of
+from warp_kernels.scene import FAR, FIXED, Sample, Scene, StyleParameters, depth_inside, offset_of
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
-
-FAR = wp.constant(1.0e30)
-"""Farther from every border than any pixel [px]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,6 +56,8 @@ class Seen:
     """How much the styles hide of what is behind them all, 0 to 1."""
     clear: float
     """Distance from the nearest border beneath [px]."""
+    calm: float
+    """How far to the right of the point the same is seen, see `Ink` [px]."""
 
 
 @wp.func
@@ -91,7 +90,7 @@ def opaque_look(color_at: Any) -> Any:
     """A wp.func that sees the frame's own triangles alone.
 
     Args:
-        color_at: A wp.func `(Scene, parameters, Sample) -> vec4f` of colour and opacity.
+        color_at: A wp.func `(Scene, parameters, Sample) -> Coated`.
     """
 
     @wp.func
@@ -102,11 +101,13 @@ def opaque_look(color_at: Any) -> Any:
         sample: Sample,
     ) -> Seen:
         """Colour, and a distance from every border beneath: there is none."""
-        color = color_at(scene, parameters, sample)
+        coated = color_at(scene, parameters, sample)
+        color = coated.color
         seen = Seen()
         seen.color = color[3] * wp.vec3f(color[0], color[1], color[2])
         seen.opacity = color[3]
         seen.clear = FAR
+        seen.calm = coated.calm
         return seen
 
     return look
@@ -117,7 +118,7 @@ def fading_look(color_at: Any) -> Any:
     """A wp.func that sees through the triangles that are not opaque yet.
 
     Args:
-        color_at: A wp.func `(Scene, parameters, Sample) -> vec4f` of colour and opacity.
+        color_at: A wp.func `(Scene, parameters, Sample) -> Coated`.
     """
 
     @wp.func
@@ -139,8 +140,10 @@ def fading_look(color_at: Any) -> Any:
         here.column = sample.column
         rest = float(1.0)
         while rest > 0.0:
-            color = color_at(scene, parameters, here)
+            coated = color_at(scene, parameters, here)
+            color = coated.color
             weight = layers.weights[here.triangle]
+            seen.calm = wp.where(rest * weight < 1.0, 0.0, coated.calm)
             seen.color += rest * weight * color[3] * wp.vec3f(color[0], color[1], color[2])
             seen.opacity += rest * weight * color[3]
             rest *= 1.0 - weight

@@ -11,6 +11,9 @@ FRACTION_BITS = 16
 FIXED = wp.constant(float(1 << FRACTION_BITS))
 """Units of a place per px."""
 
+FAR = wp.constant(1.0e30)
+"""Farther than any picture is wide [px]."""
+
 Numbers = wp.types.vector(length=16, dtype=wp.float32)
 """A style's numbers, in the order that the style itself fixes; the rest is zero."""
 
@@ -71,6 +74,8 @@ class Scene:
     """The same of every output row, [rows]."""
     pixel: float
     """Size of an output pixel [px of the picture]."""
+    parts: wp.array(dtype=wp.vec4f)
+    """Every set of samples of a pixel, see `shade.parts_of_a_pixel`."""
     sample_size: wp.vec2f
     """Width and height of the parts of an output pixel that are told apart [2^-16 px]."""
 
@@ -104,6 +109,9 @@ class Ink:
     """How much the ink hides, 0 to 1; mixes code values, as painting programs do."""
     coverage: float
     """Part of the point that is inked at all, 0 to 1; mixes light, as the eye does."""
+    calm: float
+    """How far its triangle goes on to the right of the point and is inked alike [px], so that the
+    next points need not be asked for; `FAR` if all of it is inked alike, 0 if it is not known."""
 
 
 @wp.func

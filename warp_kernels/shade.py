@@ -11,14 +11,19 @@ ink on paper, a style gives its coverage, which mixes light; see `blend`.
 from functools import cache
 from typing import Any
 
+import numpy as np
 import warp as wp
 
 from warp_kernels.blend import Coat, stack_of
 from warp_kernels.device import Device, Phase
-from warp_kernels.layers import FAR, LayerTables, Seen, fading_look, opaque_look
-from warp_kernels.scene import Sample, Scene, StyleParameters, offset_of
+from warp_kernels.layers import LayerTables, Seen, fading_look, opaque_look
+from warp_kernels.scene import FAR, FIXED, Sample, Scene, StyleParameters, offset_of
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
+
+
+CAUTION = wp.constant(0.98)
+"""Part of a distance that is relied on: places are rounded."""
 
 
 @wp.func
@@ -66,75 +71,34 @@ def transparent_pixel(seen: Seen) -> wp.vec4ub:
     )
 
 
-@wp.struct
-class Part:
-    """A part of a pixel that is shaded at once."""
+def parts_of_a_pixel(samples: int) -> np.ndarray:
+    """What every set of a pixel's samples is, by the set as bits, sample 0 the lowest.
 
-    triangle: int
-    """The triangle that holds it."""
-    count: int
-    """Samples that it consists of."""
-    step: wp.vec2f
-    """Its middle from the centre of the pixel [half samples]."""
+    Args:
+        samples: Samples of a pixel, across and down each.
+
+    Returns:
+        `Scene.parts`, [2^(samples^2), 4]: number of samples, their middle from the centre of the
+        pixel, right and down [samples], and the number of the first one.
+    """
+    sets = np.arange(1 << samples**2)
+    bits = (sets[:, None] >> np.arange(samples**2)) & 1
+    counts = bits.sum(axis=1)
+    down, right = np.divmod(np.arange(samples**2), samples) - np.array([[(samples - 1) / 2]])
+    middles = bits @ np.stack([right, down], axis=1) / np.maximum(counts, 1)[:, None]
+    return np.column_stack([counts, middles, bits.argmax(axis=1)])
 
 
 @wp.func
-def sample_of(pixel: Sample, part: Part, anchor: wp.vec2i, sample_size: wp.vec2f) -> Sample:
-    """The middle of a part of a pixel, in a triangle with this anchor."""
-    step = 0.5 * wp.cw_mul(part.step, sample_size)
+def sample_of(pixel: Sample, triangle: int, anchor: wp.vec2i, step: wp.vec2f) -> Sample:
+    """A point of a pixel, a step from its centre [2^-16 px], in a triangle with this anchor."""
     here = Sample()
-    here.triangle = part.triangle
+    here.triangle = triangle
     here.place = pixel.place + wp.vec2i(int(wp.rint(step[0])), int(wp.rint(step[1])))
     here.offset = offset_of(here.place, anchor)
     here.row = pixel.row
     here.column = pixel.column
     return here
-
-
-@cache
-def _parts(samples: int) -> tuple[Any, Any, Any, Any]:
-    """How a pixel falls apart: the type of its samples' triangles, and the kinds of its parts."""
-    square = wp.types.vector(length=samples * samples, dtype=wp.int32)
-
-    @wp.func
-    def triangles_of(line: wp.array(dtype=int), first: int) -> square:
-        """The triangles of the samples, row by row."""
-        width = line.shape[0] / wp.static(samples)
-        triangles = square()
-        for k in range(wp.static(samples * samples)):
-            triangles[k] = line[(k // samples) * width + first + k % samples]
-        return triangles
-
-    @wp.func
-    def of_triangle(triangles: square, left: int) -> Part:
-        """All samples of one triangle; it has more samples before it than are left."""
-        part = Part()
-        part.triangle = -1
-        for k in range(wp.static(samples * samples)):
-            part.triangle = wp.where(part.triangle < 0, triangles[k], part.triangle)
-        right = int(0)
-        down = int(0)
-        # no branches: whose a sample is cannot be guessed
-        for k in range(wp.static(samples * samples)):
-            own = wp.where(triangles[k] == part.triangle, 1, 0)
-            part.count += own
-            right += own * (2 * (k % samples) + 1 - samples)
-            down += own * (2 * (k // samples) + 1 - samples)
-        part.step = wp.vec2f(float(right), float(down)) / float(part.count)
-        return part
-
-    @wp.func
-    def of_sample(triangles: square, left: int) -> Part:
-        """One sample."""
-        k = wp.static(samples * samples) - left
-        part = Part()
-        part.triangle = triangles[k]
-        part.count = 1
-        part.step = wp.vec2f(float(2 * (k % samples) + 1 - samples), 0.0)
-        part.step[1] = float(2 * (k / samples) + 1 - samples)
-        return part
-
-    return square, triangles_of, of_triangle, of_sample
 
 
 @cache
@@ -155,7 +119,9 @@ def _even_look(look: Any, samples: int) -> Any:
         here = Sample()
         here.triangle = line[first]
         if is_whole(line, first, width, wp.static(samples - 1)):
-            return look(scene, parameters, layers, here)
+            even = look(scene, parameters, layers, here)
+            even.calm = 0.0
+            return even
         seen = Seen()
         for i in range(wp.static(samples)):
             for j in range(wp.static(samples)):
@@ -177,7 +143,17 @@ def _pixel_look(look: Any, samples: int, fades: bool) -> Any:
     Warp hands a scene over by value. Where a function is called at one place only the compiler
     puts it there and nothing is copied: so there is one loop for all three cases.
     """
-    square, triangles_of, of_triangle, of_sample = _parts(samples)
+    every = (1 << samples * samples) - 1
+
+    @wp.func
+    def samples_in(line: wp.array(dtype=int), first: int, triangle: int) -> int:
+        """The samples of a pixel that lie in a triangle, as bits; without a branch."""
+        width = line.shape[0] / wp.static(samples)
+        found = int(0)
+        for k in range(wp.static(samples * samples)):
+            other = line[(k // samples) * width + first + k % samples]
+            found += wp.where(other == triangle, 1 << k, 0)
+        return found
 
     @wp.func
     def pixel_look(
@@ -191,38 +167,36 @@ def _pixel_look(look: Any, samples: int, fades: bool) -> Any:
         first = pixel.column * wp.static(samples)
         width = line.shape[0] / wp.static(samples)
         whole = is_whole(line, first, width, wp.static(samples - 1))
-        triangles = square()
-        if not whole:
-            triangles = triangles_of(line, first)
         by_sample = bool(False)
         # as far as a pixel's corner is from its centre, also where a map stretches by a quarter
         near = 0.884 * pixel.extent
         seen = Seen()
         seen.clear = FAR
-        left = int(wp.static(samples * samples))
-        while left > 0:
-            part = Part()
-            part.triangle = line[first]
-            part.count = left
-            if by_sample:
-                part = of_sample(triangles, left)
-            elif not whole:
-                part = of_triangle(triangles, left)
-                for k in range(wp.static(samples * samples)):
-                    triangles[k] = wp.where(triangles[k] == part.triangle, -1, triangles[k])
-            left -= part.count
-            share = float(part.count) * wp.static(1.0 / samples**2)
-            here = sample_of(pixel, part, scene.anchors[part.triangle], scene.sample_size)
+        left = int(wp.static(every))
+        while left != 0:
+            triangle = line[first]
+            share = float(1.0)
+            step = wp.vec2f()
+            own = left
+            if by_sample or not whole:
+                k = int(scene.parts[left][3])
+                triangle = line[(k / wp.static(samples)) * width + first + k % wp.static(samples)]
+                own = wp.where(by_sample, left & -left, left & samples_in(line, first, triangle))
+                part = scene.parts[own]
+                share = part[0] * wp.static(1.0 / samples**2)
+                step = wp.cw_mul(wp.vec2f(part[1], part[2]), scene.sample_size)
+            left = left ^ own
+            here = sample_of(pixel, triangle, scene.anchors[triangle], step)
             # as wide as a strip of so many samples beside the border
             here.extent = pixel.extent * wp.max(share, wp.static(1.0 / samples))
             found = look(scene, parameters, layers, here)
             seen.color += share * found.color
             seen.opacity += share * found.opacity
             seen.clear = wp.min(seen.clear, found.clear)
+            seen.calm = wp.where(whole, found.calm, 0.0)
             if wp.static(fades) and left == 0 and not by_sample and seen.clear < near:
                 by_sample = True
-                triangles = triangles_of(line, first)
-                left = wp.static(samples * samples)
+                left = wp.static(every)
                 seen = Seen()
         return seen
 
@@ -268,13 +242,20 @@ def _shade_kernel(coats: tuple[Coat, ...], samples: int, fades: bool) -> Any:
         pixel.row = row
         pixel.extent = scene.pixel
         y = scene.rows[row]
+        calm_share = CAUTION * wp.static(FIXED / samples) / scene.sample_size[0]
         column = int(0)
         while column < canvas_out.shape[1]:
             pixel.column = column
             pixel.place = wp.vec2i(scene.columns[column], y)
             seen = pixel_look(scene, parameters, layers, line, pixel)
-            canvas_out[row, column] = pixel_of(seen)
+            color = pixel_of(seen)
+            canvas_out[row, column] = color
             column += 1
+            # the pixels up to here lie in the same triangle and look the same
+            alike = wp.min(column + int(seen.calm * calm_share), canvas_out.shape[1])
+            while column < alike:
+                canvas_out[row, column] = color
+                column += 1
 
     return shade
 

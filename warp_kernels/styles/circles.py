@@ -53,7 +53,9 @@ def packed_color(scene: Scene, parameters: StyleParameters, sample: Sample, belo
     ink = Ink()
     ink.color = scene.colors[t]
     ink.opacity = 1.0
-    ink.coverage = coverage_of(depth - 0.5 * parameters.numbers[0], sample.extent)
+    depth -= 0.5 * parameters.numbers[0]
+    ink.coverage = coverage_of(depth, sample.extent)
+    ink.calm = depth - 0.5 * sample.extent
     return ink
 
 

@@ -44,6 +44,7 @@ def shrunk_color(scene: Scene, parameters: StyleParameters, sample: Sample, belo
     ink.color = scene.colors[t]
     ink.opacity = 1.0
     ink.coverage = coverage_of(depth + rounding, sample.extent)
+    ink.calm = depth + rounding - 0.5 * sample.extent
     return ink
 
 
