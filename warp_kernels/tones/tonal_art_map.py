@@ -34,7 +34,7 @@ SPACING = 8.0
 ROUGHNESS = 150.0
 """Waves of the paper's tooth along a tile, up to about."""
 
-Drawing = Callable[[np.random.Generator, float, "np.ndarray | None"], Iterator[Inking]]
+Drawing = Callable[[np.random.Generator, float, np.ndarray | None], Iterator[Inking]]
 """Endless strokes, the lightest tone's first; takes a source of chance, the width of thin lines
 [spacings] and the tooth of the paper."""
 
