@@ -10,7 +10,7 @@ from warp_kernels.scene import Scene, StyleParameters
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 
 LINE = 64
-"""Every level begins at a whole multiple of so many bytes: the processor fetches so many at once."""
+"""Levels begin at whole multiples of so many bytes: the processor fetches so many at once."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -19,6 +19,8 @@ ACROSS, DOWN = 8, 4
 """Columns and rows of a block."""
 SMALLEST = 8
 """Side of the coarsest level that is kept: its texels are as wide as the tile has lines."""
+STEPS = 256
+"""Positions on a tile are whole numbers of so many steps per texel."""
 PAIRS = TONES - 1
 """Pairs of a tone and the next darker one."""
 
@@ -121,7 +123,7 @@ def ink_at(scene: Scene, line: int, side: int, part: float, x: int, y: int) -> f
         side: Side of the level [texels].
         part: Share of the darker tone.
         x: Position to the right on the tile and its repetitions, from the first texel's centre
-            [1/256 texel of the level].
+            [STEPS per texel of the level].
         y: The same down.
     """
     # the second mask says the same and tells the compiler that no index is negative

@@ -6,7 +6,6 @@ stroke that leaves on one side comes in on the other, so that tiles join without
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
