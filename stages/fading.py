@@ -47,8 +47,6 @@ class Origins:
 class Vanished:
     """The triangles that went with one step, as they were in the frame before."""
 
-    lines: np.ndarray
-    """Their sides, as `Layers` has them, [G, 3, 3]."""
     paint: Paint
     """Their shapes and colours."""
     origins: Origins
@@ -131,7 +129,7 @@ class Fading:
         maps = np.zeros((len(gone), 2, 3))
         maps[fading] = _maps(corners[fading], origins.corners[fading])
         paint = self.paint.of(gone)
-        return Vanished(_lines(corners, paint.corners[:, 0]), paint, origins, maps, links)
+        return Vanished(paint, origins, maps, links)
 
     def layers(self) -> tuple[Paint, Layers | None]:
         """What is drawn: all layers, and how they lie over each other.
@@ -143,7 +141,7 @@ class Fading:
         if len(young) == 0:
             return self.paint, None
         batches = [self.vanished[step] for step in sorted(self.vanished)]
-        sizes = [self.mesh.triangle_count, *(len(batch.lines) for batch in batches)]
+        sizes = [self.mesh.triangle_count, *(len(batch.paint.colors) for batch in batches)]
         begins = np.cumsum(sizes) - sizes
         links, link_begins = self._links(batches, begins[1:])
         paint = joined_paint([self.paint, *(batch.paint for batch in batches)])
@@ -153,12 +151,10 @@ class Fading:
             departures=np.zeros((sum(sizes), 2)),
             spans=np.zeros((sum(sizes), 2), np.int32),
             links=links,
-            lines=np.zeros((sum(sizes), 3, 3), np.float32),
         )
         own, origins = self.mesh.vertices[by_vertex_id(self.mesh, young)], self.origins.of(young)
         parts = [(young, origins, _maps(own, origins.corners))]
         for begin, batch in zip(begins[1:], batches, strict=True):
-            table.lines[begin : begin + len(batch.lines)] = batch.lines
             fading = np.flatnonzero(self._is_young(batch.origins))
             parts.append((begin + fading, batch.origins.of(fading), batch.maps[fading]))
         for layers, origins, maps in parts:
@@ -226,27 +222,6 @@ def _before(before: Mesh, mesh: Mesh) -> np.ndarray:
     earlier = mesh.vertices + sliding(mesh, steps)
     earlier[known] = before.vertices[places[known]]
     return earlier
-
-
-def _lines(corners: np.ndarray, anchors: np.ndarray) -> np.ndarray:
-    """Sides of triangles as a x + b y + c, the distance to the inside [px].
-
-    Args:
-        corners: Positions of either orientation [px], [G, 3, 2].
-        anchors: From where x and y count [px], [G, 2].
-
-    Returns:
-        Shape [G, 3, 3].
-    """
-    corners = corners - anchors[:, None]
-    sides = corners[:, [1, 2, 0]] - corners
-    normals = np.stack([-sides[:, :, 1], sides[:, :, 0]], axis=2)
-    normals /= np.linalg.norm(normals, axis=2, keepdims=True)
-    # The third corner lies inside of the side between the other two.
-    heights = ((corners[:, [2, 0, 1]] - corners) * normals).sum(axis=2)
-    normals *= np.sign(heights)[:, :, None]
-    offsets = -(normals * corners).sum(axis=2, keepdims=True)
-    return np.concatenate([normals, offsets], axis=2)
 
 
 def _mapped(maps: np.ndarray, points: np.ndarray) -> np.ndarray:

@@ -64,7 +64,6 @@ class Renderer:
         return self._canvas.draw(
             vertices=mesh.vertices,
             triangles=mesh.triangles,
-            edges=mesh.edge_vertices,
             paint=paint,
             layers=layers,
             source=source,

@@ -4,13 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.spatial import Delaunay
 
 from stages.layouts.grid import Grid
 from stages.mesh import Mesh, mesh_of
 from stages.render import Renderer
 from stages.snapshot import Snapshot
-from stages.validate import assert_valid
 from tests.kernel_samples import noise, random_mesh, snapshot_of, waves
 from warp_kernels.color_model import CONSTANT, LINEAR, QUADRATIC
 from warp_kernels.device import Device
@@ -193,36 +191,6 @@ def test_opacity_zero_is_invisible(device: str) -> None:
     lines = Edges(width=3, opacity=0)
     plain_picture = draw(snapshot, device, Flat())
     np.testing.assert_array_equal(draw(snapshot, device, Flat(), lines), plain_picture)
-
-
-def test_translated_mesh_gives_the_translated_picture(device: str) -> None:
-    """Whole pixels further, inner triangles look the same to the bit."""
-    inner = random_mesh(40, 30, 30, grid=256)
-    shift = np.array([5, 3])
-    meshes = [_framed(inner, np.array([20, 16]) + step) for step in (0 * shift, shift)]
-    rng = np.random.default_rng(3)
-    colors = rng.integers(0, 256, (meshes[0].triangle_count, 3))
-    mask = np.where(np.arange(len(colors))[:, None] < inner.triangle_count, 255, [[0, 0, 0]])
-    for style in (Flat(), Gradient()):
-        here, there = (draw(painted(m, colors), device, style) for m in meshes)
-        whole = draw(painted(meshes[0], mask), device, Flat())[..., 0] == 255
-        assert whole.sum() > 900
-        shifted = np.roll(there, -shift[::-1], axis=(0, 1))
-        np.testing.assert_array_equal(shifted[whole], here[whole])
-
-
-def _framed(inner: Mesh, offset: np.ndarray) -> Mesh:
-    """A mesh placed inside a picture of 96 x 64 px; its triangles come first."""
-    hull = inner.vertices + offset
-    corners = np.array([[0, 0], [96, 0], [0, 64], [96, 64]])
-    points = np.concatenate([hull, corners])
-    rim = np.flatnonzero(inner.on_left_right | inner.on_top_bottom)
-    used = np.concatenate([rim, len(hull) + np.arange(4)])
-    rows = used[Delaunay(points[used]).simplices]
-    outside = [row for row in rows if (row >= len(hull)).any()]
-    mesh = mesh_of(points, np.concatenate([inner.triangles, outside]), 96, 64)
-    assert_valid(mesh)
-    return mesh
 
 
 @pytest.mark.parametrize("size", [(0, 10), (10, 0), (MAX_SIDE + 1, 10)])

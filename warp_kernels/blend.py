@@ -33,6 +33,8 @@ class Coat:
     """Its blend mode, a key of `BLENDS`."""
     is_opaque: bool
     """Whether nothing below it shows or is left transparent."""
+    is_even: bool
+    """Whether its ink is the same all over a triangle."""
 
 
 @wp.func
@@ -92,10 +94,8 @@ def to_code(light: wp.vec3f) -> wp.vec3f:
 @wp.func
 def inked(below: wp.vec4f, painted: wp.vec4f, coverage: float) -> wp.vec4f:
     """What is painted on a part of the area, what lies below on the rest; colour and opacity."""
-    if coverage >= 1.0:
-        return painted
     opacity = wp.lerp(below[3], painted[3], coverage)
-    if coverage <= 0.0 or opacity <= 0.0:
+    if opacity <= 0.0:
         return below
     under = to_light(wp.vec3f(below[0], below[1], below[2]))
     over = to_light(wp.vec3f(painted[0], painted[1], painted[2]))
@@ -141,7 +141,12 @@ def stack_of(coats: tuple[Coat, ...]) -> Any:
         under = below(scene, parameters, sample)
         own = parameters[wp.static(layer)]
         ink = top(scene, own, sample, under)
-        return inked(under, lay(under, ink.color, ink.opacity * own.opacity), ink.coverage)
+        if ink.coverage <= 0.0:
+            return under
+        painted = lay(under, ink.color, ink.opacity * own.opacity)
+        if ink.coverage >= 1.0:
+            return painted
+        return inked(under, painted, ink.coverage)
 
     return blended
 

@@ -7,13 +7,12 @@ import warp as wp
 
 from warp_kernels.blend import Coat
 from warp_kernels.device import Device, Phase
-from warp_kernels.edge_coverage import BAND, record_edge_coverage
 from warp_kernels.gbuffer import record_gbuffer
 from warp_kernels.layers import Layers, LayerTables
 from warp_kernels.paint import Paint, shapes_of, to_places
 from warp_kernels.prepare import record_prepare
 from warp_kernels.raster import MAX_SIDE
-from warp_kernels.scene import FRACTION_BITS, Numbers, Scene, StyleParameters
+from warp_kernels.scene import FIXED, FRACTION_BITS, Numbers, Scene, StyleParameters
 from warp_kernels.shade import record_shade
 from warp_kernels.source_picture import reduced, step_for
 from warp_kernels.styles import Style
@@ -49,7 +48,9 @@ class Canvas:
         self.picture = picture
         self.output = output
         self.samples = max(1, min(SAMPLES, MAX_SIDE // max(output)))
-        self._coats = tuple(Coat(style.shader, style.blend, style.is_opaque) for style in styles)
+        self._coats = tuple(
+            Coat(style.shader, style.blend, style.is_opaque, style.is_even) for style in styles
+        )
         self._prepares = {i: s.prepare for i, s in enumerate(styles) if s.prepare is not None}
         width, height = output
         columns = width * self.samples
@@ -57,13 +58,7 @@ class Canvas:
         self._triangle_of = device.empty((self._band * self.samples, columns), int)
         is_opaque = any(coat.is_opaque for coat in self._coats)
         self._pixels = device.empty((height, width), wp.vec3ub if is_opaque else wp.vec4ub)
-        self._edge_count = device.empty(1, int)
         self._curved = device.empty(1, int)
-        self._line_width = max((style.line_width for style in styles), default=0.0)
-        self._coverage = device.empty((height, width) if self._line_width else (1, 1), float)
-        device.clear(self._coverage)
-        self._sample_columns = self._filled(centres(picture[0], columns), int)
-        self._sample_rows = self._filled(centres(picture[1], height * self.samples), int)
         self._steady = self._steady_scene(needs_source=any(s.needs_source for s in styles))
         self._parameters = self._parameters_of(styles, textures)
         self._allocate(vertices=512, triangles=1024, layers=1024, links=1)
@@ -73,15 +68,14 @@ class Canvas:
         width, height = self.picture
         step = step_for(self.picture, self.output)
         size = (-(-height // step), -(-width // step)) if needs_source else (1, 1)
-        per_pixel = np.array(self.picture) / self.output
         return {
             "curved": self._curved,
-            "edge_coverage": self._coverage,
             "source": self.device.empty(size, wp.vec3ub),
             "source_step": step,
             "columns": self._filled(centres(width, self.output[0]), int),
             "rows": self._filled(centres(height, self.output[1]), int),
-            "pixel": float(np.sqrt((per_pixel**2).mean())),
+            "pixel": float(np.sqrt((0.5 / np.square(self._scale)).sum())),
+            "sample_size": wp.vec2f(*(FIXED / (scale * self.samples) for scale in self._scale)),
         }
 
     def _parameters_of(self, styles: tuple[Style, ...], textures: list[Texture | None]) -> wp.array:
@@ -102,7 +96,6 @@ class Canvas:
         *,
         vertices: np.ndarray,
         triangles: np.ndarray,
-        edges: np.ndarray,
         paint: Paint,
         layers: Layers | None = None,
         source: np.ndarray | None = None,
@@ -112,7 +105,6 @@ class Canvas:
         Args:
             vertices: Positions [px of the picture], [V, 2].
             triangles: Corners, [T, 3].
-            edges: Ends, [E, 2].
             paint: The triangles, then the M - T vanished ones that show through.
             layers: What fading triangles let through; None where none fades, M is T then.
             source: The picture [code values], [H, W, 3] uint8; looked at if a style needs it.
@@ -129,23 +121,15 @@ class Canvas:
         )
         if layers is not None:
             self._write_layers(layers)
-        for array, values in (
-            (self._vertices, vertices),
-            (self._triangles, triangles),
-            (self._edges, edges),
-            (self._edge_count, np.array([len(edges)])),
-        ):
-            self.device.write(array, values)
-        self._write_paint(paint)
+        self.device.write(self._vertices, vertices)
+        self.device.write(self._triangles, triangles)
+        is_even = all(coat.is_even for coat in self._coats)
+        self._write_paint(paint, shapes=not is_even or layers is not None)
         if source is not None and self._steady["source"].size > 1:
             self.device.write(self._steady["source"], reduced(source, self._steady["source_step"]))
         for preparing in self._preparing:
             preparing.resize(len(paint.colors))
         phases = list(self._preparing)
-        if self._line_width:
-            self.device.clear(self._coverage)
-            self._edge_drawing.resize(-(-self.output[1] // BAND), per_element=len(edges))
-            phases.append(self._edge_drawing)
         for top, filling, shading in self._bands(fades=layers is not None):
             filling.resize(len(triangles))
             shading.resize(min(self._band, self.output[1] - top))
@@ -153,20 +137,23 @@ class Canvas:
         self.device.run(phases)
         return self.device.read(self._pixels, self.output[1])
 
-    def _write_paint(self, paint: Paint) -> None:
-        """Hand over shapes and colours."""
-        write, tables, shapes = self.device.write, self._tables, shapes_of(paint.corners)
-        for name in ("colors", "gradients", "hashes"):
-            write(tables[name], getattr(paint, name))
-        for name in ("anchors", "sides", "incircles"):
-            write(tables[name], getattr(shapes, name))
+    def _write_paint(self, paint: Paint, *, shapes: bool) -> None:
+        """Hand over colours, and shapes if they are looked at."""
+        write, tables = self.device.write, self._tables
+        write(tables["colors"], paint.colors)
         write(self._curved, np.array([0 if paint.curvatures is None else 1]))
         if paint.curvatures is not None:
             write(tables["curvatures"], paint.curvatures)
+        if shapes:
+            found = shapes_of(paint.corners)
+            for name in ("anchors", "sides", "incircles", "lines"):
+                write(tables[name], getattr(found, name))
+            write(tables["gradients"], paint.gradients)
+            write(tables["hashes"], paint.hashes)
 
     def _write_layers(self, layers: Layers) -> None:
         """Hand over what shows through."""
-        for name in ("weights", "turns", "spans", "links", "lines"):
+        for name in ("weights", "turns", "spans", "links"):
             self.device.write(getattr(self._layers, name), getattr(layers, name))
         self.device.write(self._layers.departures, to_places(layers.departures))
 
@@ -188,7 +175,6 @@ class Canvas:
         }
         self._vertices = self._empty(vertices, wp.vec2d)
         self._triangles = self._empty(triangles, wp.vec3i)
-        self._edges = self._empty(vertices + triangles + 1, wp.vec2i)
         self._tables = {
             "colors": self._empty(layers, wp.vec3f),
             "gradients": self._empty((layers, 2), wp.vec3f),
@@ -196,6 +182,7 @@ class Canvas:
             "anchors": self._empty(layers, wp.vec2i),
             "sides": self._empty((layers, 2), wp.vec2f),
             "incircles": self._empty(layers, wp.vec3f),
+            "lines": self._empty(layers, wp.mat33f),
             "hashes": self._empty(layers, wp.uint32),
             "prepared": self._empty((len(self._parameters), layers), Numbers),
         }
@@ -205,18 +192,8 @@ class Canvas:
         tables.departures = self._empty(layers, wp.vec2i)
         tables.spans = self._empty(layers, wp.vec2i)
         tables.links = self._empty(links, int)
-        tables.lines = self._empty(layers, wp.mat33f)
         self._layers = tables
         self._recorded: dict[bool, list[tuple[int, Phase, Phase]]] = {}
-        self._edge_drawing = record_edge_coverage(
-            self.device,
-            vertices=self._vertices,
-            edges=self._edges,
-            edge_count=self._edge_count,
-            scale=self._scale,
-            half_width=0.5 * self._line_width * self._scale[1],
-            coverage_out=self._coverage,
-        )
         self._preparing = [
             record_prepare(
                 self.device,
@@ -273,8 +250,6 @@ class Canvas:
             layers=self._layers,
             fades=fades,
             triangle_of=self._triangle_of,
-            sample_columns=self._sample_columns,
-            sample_rows=self._sample_rows,
             top=top,
             canvas_out=self._pixels,
         )

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import warp as wp
 
-from warp_kernels.scene import FIXED, Sample, Scene, StyleParameters, offset_of
+from warp_kernels.scene import FIXED, Sample, Scene, StyleParameters, depth_inside, offset_of
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 
@@ -36,9 +36,6 @@ class Layers:
     """Begin and end of what lies beneath in `links`, not empty if a layer fades, [M, 2] int32."""
     links: np.ndarray
     """Numbers of layers, [L] int32."""
-    lines: np.ndarray
-    """For the sides of a vanished layer (a, b, c): a x + b y + c is the distance from the side
-    to the inside, (x, y) seen from its anchor [px]; [M, 3, 3] float32."""
 
 
 @wp.struct
@@ -50,7 +47,6 @@ class LayerTables:
     departures: wp.array(dtype=wp.vec2i)
     spans: wp.array(dtype=wp.vec2i)
     links: wp.array(dtype=int)
-    lines: wp.array(dtype=wp.mat33f)
 
 
 @wp.struct
@@ -66,13 +62,6 @@ class Seen:
 
 
 @wp.func
-def depth_inside(lines: wp.mat33f, offset: wp.vec2f) -> float:
-    """Distance to the nearest side of a layer [px], negative outside."""
-    distances = lines * wp.vec3f(offset[0], offset[1], 1.0)
-    return wp.min(wp.min(distances[0], distances[1]), distances[2])
-
-
-@wp.func
 def departed(layers: LayerTables, sample: Sample) -> wp.vec2i:
     """Where a fading layer's material lay in the frame before its birth [2^-16 px]."""
     moved = FIXED * (layers.turns[sample.triangle] * sample.offset)
@@ -85,11 +74,11 @@ def layer_beneath(scene: Scene, layers: LayerTables, above: int, place: wp.vec2i
     """The layer that holds a place under a fading one; beyond the outline of all the nearest."""
     span = layers.spans[above]
     found = layers.links[span[0]]
-    deepest = depth_inside(layers.lines[found], offset_of(place, scene.anchors[found]))
+    deepest = depth_inside(scene.lines[found], offset_of(place, scene.anchors[found]))
     number = span[0] + 1
     while number < span[1] and deepest <= 0.0:
         other = layers.links[number]
-        depth = depth_inside(layers.lines[other], offset_of(place, scene.anchors[other]))
+        depth = depth_inside(scene.lines[other], offset_of(place, scene.anchors[other]))
         if depth > deepest:
             deepest = depth
             found = other
@@ -130,7 +119,6 @@ def fading_look(color_at: Any) -> Any:
     Args:
         color_at: A wp.func `(Scene, parameters, Sample) -> vec4f` of colour and opacity.
     """
-    plain = opaque_look(color_at)
 
     @wp.func
     def look(
@@ -140,30 +128,28 @@ def fading_look(color_at: Any) -> Any:
         sample: Sample,
     ) -> Seen:
         """Colour, and the distance from the nearest border beneath [px]."""
-        seen = plain(scene, parameters, layers, sample)
-        weight = layers.weights[sample.triangle]
-        if weight == 1.0:
-            return seen
-        seen.color = weight * seen.color
-        seen.opacity = weight * seen.opacity
-        rest = 1.0 - weight
+        seen = Seen()
+        seen.clear = FAR
         here = Sample()
         here.triangle = sample.triangle
         here.offset = sample.offset
         here.place = sample.place
+        here.extent = sample.extent
         here.row = sample.row
         here.column = sample.column
-        while weight < 1.0:
-            place = departed(layers, here)
-            here.triangle = layer_beneath(scene, layers, here.triangle, place)
-            here.offset = offset_of(place, scene.anchors[here.triangle])
-            depth = depth_inside(layers.lines[here.triangle], here.offset)
-            seen.clear = wp.min(seen.clear, depth)
+        rest = float(1.0)
+        while rest > 0.0:
+            color = color_at(scene, parameters, here)
             weight = layers.weights[here.triangle]
-            beneath = plain(scene, parameters, layers, here)
-            seen.color += rest * weight * beneath.color
-            seen.opacity += rest * weight * beneath.opacity
+            seen.color += rest * weight * color[3] * wp.vec3f(color[0], color[1], color[2])
+            seen.opacity += rest * weight * color[3]
             rest *= 1.0 - weight
+            if weight < 1.0:
+                place = departed(layers, here)
+                here.triangle = layer_beneath(scene, layers, here.triangle, place)
+                here.offset = offset_of(place, scene.anchors[here.triangle])
+                depth = depth_inside(scene.lines[here.triangle], here.offset)
+                seen.clear = wp.min(seen.clear, depth)
         return seen
 
     return look

@@ -72,6 +72,8 @@ class Shapes:
     """Corners 1 and 2 from corner 0 [px], [N, 2, 2]."""
     incircles: np.ndarray
     """Incentre from corner 0 and the inradius [px], [N, 3]."""
+    lines: np.ndarray
+    """Their sides, as `Scene` has them, [N, 3, 3]."""
 
 
 def shapes_of(corners: np.ndarray) -> Shapes:
@@ -89,4 +91,23 @@ def shapes_of(corners: np.ndarray) -> Shapes:
     centres = (across[1, :, None] * first + across[2, :, None] * second) / perimeter[:, None]
     twice_area = np.abs(first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0])
     radii = twice_area / perimeter
-    return Shapes(places[:, 0], sides, np.concatenate([centres, radii[:, None]], axis=1))
+    incircles = np.concatenate([centres, radii[:, None]], axis=1)
+    return Shapes(places[:, 0], sides, incircles, _lines(first, second))
+
+
+def _lines(first: np.ndarray, second: np.ndarray) -> np.ndarray:
+    """Sides of triangles of either orientation, [N, 3, 3].
+
+    Args:
+        first: Corners 1 from corner 0 [px], [N, 2].
+        second: Corners 2 from there [px], [N, 2].
+    """
+    corners = np.stack([np.zeros_like(first), first, second], axis=1)
+    sides = corners[:, [1, 2, 0]] - corners
+    normals = np.stack([-sides[:, :, 1], sides[:, :, 0]], axis=2)
+    normals /= np.maximum(np.linalg.norm(normals, axis=2, keepdims=True), 1e-12)
+    # the third corner lies inside of the side between the other two
+    heights = ((corners[:, [2, 0, 1]] - corners) * normals).sum(axis=2)
+    normals *= np.where(heights < 0, -1.0, 1.0)[:, :, None]
+    offsets = -(normals * corners).sum(axis=2, keepdims=True)
+    return np.concatenate([normals, offsets], axis=2)

@@ -50,12 +50,13 @@ class Scene:
     """Corners 1 and 2 from corner 0 [px of the picture]; the first is the base edge, [T, 2]."""
     incircles: wp.array(dtype=wp.vec3f)
     """Incentre from corner 0 and the inradius [px of the picture], [T]."""
+    lines: wp.array(dtype=wp.mat33f)
+    """Rows (a, b, c) for the sides from corners 0, 1 and 2 on: a x + b y + c is the distance from
+    the side to the inside, (x, y) seen from corner 0 [px of the picture], [T]."""
     hashes: wp.array(dtype=wp.uint32)
     """A number without order for every triangle that stays with it from frame to frame, [T]."""
     prepared: wp.array2d(dtype=Numbers)
     """What styles worked out about every triangle beforehand, [styles, T]."""
-    edge_coverage: wp.array2d(dtype=float)
-    """Part of every output pixel covered by drawn edges, [rows, columns]; may be empty."""
     source: wp.array2d(dtype=wp.vec3ub)
     """The source picture, smaller by the factor `source_step`; empty unless a style needs it."""
     source_step: int
@@ -69,7 +70,9 @@ class Scene:
     rows: wp.array(dtype=int)
     """The same of every output row, [rows]."""
     pixel: float
-    """Size of an output pixel, where a shader smooths or leaves out detail [px of the picture]."""
+    """Size of an output pixel [px of the picture]."""
+    sample_size: wp.vec2f
+    """Width and height of the parts of an output pixel that are told apart [2^-16 px]."""
 
 
 @wp.struct
@@ -82,6 +85,9 @@ class Sample:
     """Position, from corner 0 of the triangle [px of the picture]."""
     place: wp.vec2i
     """The same from the picture's upper left [2^-16 px]; to look into `source`, nothing else."""
+    extent: float
+    """Side of the square that the point stands for, an output pixel or a part of one: a shader
+    smooths over it and leaves finer detail out [px of the picture]."""
     row: int
     """Row of the output pixel."""
     column: int
@@ -98,6 +104,18 @@ class Ink:
     """How much the ink hides, 0 to 1; mixes code values, as painting programs do."""
     coverage: float
     """Part of the point that is inked at all, 0 to 1; mixes light, as the eye does."""
+
+
+@wp.func
+def depths(lines: wp.mat33f, offset: wp.vec2f) -> wp.vec3f:
+    """Distances from the sides of a triangle to the inside, negative outside [px]."""
+    return lines * wp.vec3f(offset[0], offset[1], 1.0)
+
+
+@wp.func
+def depth_inside(lines: wp.mat33f, offset: wp.vec2f) -> float:
+    """Distance from the nearest side of a triangle to the inside, negative outside [px]."""
+    return wp.min(depths(lines, offset))
 
 
 @wp.func

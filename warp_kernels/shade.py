@@ -1,8 +1,8 @@
 """One generic shader: a stack of styles, bottom to top, blended for every output pixel.
 
 A pixel whose samples all lie in one triangle is shaded once, at its centre; a pixel on a border is
-shaded once for each of its triangles, in the middle of the samples that lie in it, and where one
-fades in, which hides borders beneath, at every sample.
+shaded once for each of its triangles, in the middle of the samples that lie in it. Where one fades
+in and a border is near beneath, the pixel is shaded at every sample.
 The average is of code values: the triangles on either side approximate one picture, so they are
 alike, and it is in code values that their error is measured. Where strong contrasts meet, such as
 ink on paper, a style gives its coverage, which mixes light; see `blend`.
@@ -15,7 +15,7 @@ import warp as wp
 
 from warp_kernels.blend import Coat, stack_of
 from warp_kernels.device import Device, Phase
-from warp_kernels.layers import LayerTables, Seen, fading_look, opaque_look
+from warp_kernels.layers import FAR, LayerTables, Seen, fading_look, opaque_look
 from warp_kernels.scene import Sample, Scene, StyleParameters, offset_of
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
@@ -66,102 +66,160 @@ def transparent_pixel(seen: Seen) -> wp.vec4ub:
     )
 
 
-@wp.func
-def sample_at(scene: Scene, pixel: Sample, triangle: int, x: int, y: int) -> Sample:
-    """A point of a pixel, in one of the triangles there, at a place [2^-16 px]."""
-    here = Sample()
-    here.row = pixel.row
-    here.column = pixel.column
-    here.triangle = triangle
-    here.place = wp.vec2i(x, y)
-    here.offset = offset_of(here.place, scene.anchors[triangle])
-    return here
+@wp.struct
+class Part:
+    """A part of a pixel that is shaded at once."""
+
+    triangle: int
+    """The triangle that holds it."""
+    count: int
+    """Samples that it consists of."""
+    step: wp.vec2f
+    """Its middle from the centre of the pixel [half samples]."""
 
 
 @cache
-def _each_triangle(look: Any, samples: int) -> Any:
-    """A wp.func that sees every triangle of a pixel once, in the middle of its samples."""
+def _parts(samples: int) -> tuple[Any, Any, Any, Any]:
+    """How a pixel falls apart: the type of its samples' triangles, and the kinds of its parts."""
+    square = wp.types.vector(length=samples * samples, dtype=wp.int32)
 
     @wp.func
-    def mixed(
+    def triangles_of(line: wp.array(dtype=int), first: int) -> square:
+        """The triangles of the samples, row by row."""
+        width = line.shape[0] / wp.static(samples)
+        triangles = square()
+        for k in range(wp.static(samples * samples)):
+            triangles[k] = line[(k // samples) * width + first + k % samples]
+        return triangles
+
+    @wp.func
+    def of_triangle(triangles: square, left: int) -> Part:
+        """All samples of one triangle; it has more samples before it than are left."""
+        part = Part()
+        part.triangle = -1
+        for k in range(wp.static(samples * samples)):
+            part.triangle = wp.where(part.triangle < 0, triangles[k], part.triangle)
+        right = int(0)
+        down = int(0)
+        # no branches: whose a sample is cannot be guessed
+        for k in range(wp.static(samples * samples)):
+            own = wp.where(triangles[k] == part.triangle, 1, 0)
+            part.count += own
+            right += own * (2 * (k % samples) + 1 - samples)
+            down += own * (2 * (k // samples) + 1 - samples)
+        part.step = wp.vec2f(float(right), float(down)) / float(part.count)
+        return part
+
+    @wp.func
+    def of_sample(triangles: square, left: int) -> Part:
+        """One sample."""
+        k = wp.static(samples * samples) - left
+        part = Part()
+        part.triangle = triangles[k]
+        part.count = 1
+        part.step = wp.vec2f(float(2 * (k % samples) + 1 - samples), 0.0)
+        part.step[1] = float(2 * (k / samples) + 1 - samples)
+        return part
+
+    return square, triangles_of, of_triangle, of_sample
+
+
+@cache
+def _even_look(look: Any, samples: int) -> Any:
+    """A wp.func that sees a pixel where every triangle has one colour: a mean of samples."""
+
+    @wp.func
+    def pixel_look(
         scene: Scene,
         parameters: wp.array(dtype=StyleParameters),
         layers: LayerTables,
         line: wp.array(dtype=int),
-        columns: wp.array(dtype=int),
-        rows: wp.array(dtype=int),
         pixel: Sample,
     ) -> Seen:
-        """The mean over the triangles by their numbers of samples."""
-        width = line.shape[0] / wp.static(samples)
+        """The mean over the samples, or one look where they all lie in one triangle."""
         first = pixel.column * wp.static(samples)
-        top = pixel.row * wp.static(samples)
+        width = line.shape[0] / wp.static(samples)
+        here = Sample()
+        here.triangle = line[first]
+        if is_whole(line, first, width, wp.static(samples - 1)):
+            return look(scene, parameters, layers, here)
         seen = Seen()
-        left = int(wp.static((1 << samples * samples) - 1))
-        while left != 0:
-            count = int(0)
-            triangle = int(0)
-            x = int(0)
-            y = int(0)
-            for i in range(wp.static(samples)):
-                for j in range(wp.static(samples)):
-                    bit = wp.static(1) << (i * wp.static(samples) + j)
-                    other = line[i * width + first + j]
-                    if count == 0 and (left & bit) != 0:
-                        triangle = other
-                    if (left & bit) != 0 and other == triangle:
-                        left = left ^ bit
-                        count += 1
-                        # from the first sample: sums of whole places would not fit
-                        x += columns[first + j] - columns[first]
-                        y += rows[top + i] - rows[top]
-            here = sample_at(
-                scene, pixel, triangle, columns[first] + x / count, rows[top] + y / count
-            )
-            part = look(scene, parameters, layers, here)
-            seen.color += float(count) * part.color
-            seen.opacity += float(count) * part.opacity
+        for i in range(wp.static(samples)):
+            for j in range(wp.static(samples)):
+                here.triangle = line[i * width + first + j]
+                part = look(scene, parameters, layers, here)
+                seen.color += part.color
+                seen.opacity += part.opacity
         seen.color = seen.color * wp.static(1.0 / (samples * samples))
         seen.opacity = seen.opacity * wp.static(1.0 / (samples * samples))
         return seen
 
-    return mixed
+    return pixel_look
 
 
 @cache
-def _each_sample(look: Any, samples: int) -> Any:
-    """A wp.func that sees every sample of a pixel: beneath one triangle there may be several."""
+def _pixel_look(look: Any, samples: int, fades: bool) -> Any:
+    """A wp.func that sees a pixel: as a whole, triangle by triangle or sample by sample.
+
+    Warp hands a scene over by value. Where a function is called at one place only the compiler
+    puts it there and nothing is copied: so there is one loop for all three cases.
+    """
+    square, triangles_of, of_triangle, of_sample = _parts(samples)
 
     @wp.func
-    def mixed(
+    def pixel_look(
         scene: Scene,
         parameters: wp.array(dtype=StyleParameters),
         layers: LayerTables,
         line: wp.array(dtype=int),
-        columns: wp.array(dtype=int),
-        rows: wp.array(dtype=int),
         pixel: Sample,
     ) -> Seen:
-        """The mean over the samples."""
-        width = line.shape[0] / wp.static(samples)
+        """The mean over the parts of the pixel."""
         first = pixel.column * wp.static(samples)
-        top = pixel.row * wp.static(samples)
+        width = line.shape[0] / wp.static(samples)
+        whole = is_whole(line, first, width, wp.static(samples - 1))
+        triangles = square()
+        if not whole:
+            triangles = triangles_of(line, first)
+        by_sample = bool(False)
+        # as far as a pixel's corner is from its centre, also where a map stretches by a quarter
+        near = 0.884 * pixel.extent
         seen = Seen()
-        number = int(0)
-        while number < wp.static(samples * samples):
-            i = number / wp.static(samples)
-            j = number % wp.static(samples)
-            triangle = line[i * width + first + j]
-            here = sample_at(scene, pixel, triangle, columns[first + j], rows[top + i])
-            part = look(scene, parameters, layers, here)
-            seen.color += part.color
-            seen.opacity += part.opacity
-            number += 1
-        seen.color = seen.color * wp.static(1.0 / (samples * samples))
-        seen.opacity = seen.opacity * wp.static(1.0 / (samples * samples))
+        seen.clear = FAR
+        here = Sample()
+        here.row = pixel.row
+        here.column = pixel.column
+        left = int(wp.static(samples * samples))
+        while left > 0:
+            part = Part()
+            part.triangle = line[first]
+            part.count = left
+            if by_sample:
+                part = of_sample(triangles, left)
+            elif not whole:
+                part = of_triangle(triangles, left)
+                for k in range(wp.static(samples * samples)):
+                    triangles[k] = wp.where(triangles[k] == part.triangle, -1, triangles[k])
+            left -= part.count
+            step = 0.5 * wp.cw_mul(part.step, scene.sample_size)
+            here.triangle = part.triangle
+            here.place = pixel.place + wp.vec2i(int(wp.rint(step[0])), int(wp.rint(step[1])))
+            here.offset = offset_of(here.place, scene.anchors[here.triangle])
+            # as wide as a strip of so many samples beside the border
+            share = float(part.count) * wp.static(1.0 / samples**2)
+            here.extent = pixel.extent * wp.max(share, wp.static(1.0 / samples))
+            found = look(scene, parameters, layers, here)
+            seen.color += share * found.color
+            seen.opacity += share * found.opacity
+            seen.clear = wp.min(seen.clear, found.clear)
+            if wp.static(fades) and left == 0 and not by_sample and seen.clear < near:
+                by_sample = True
+                triangles = triangles_of(line, first)
+                left = wp.static(samples * samples)
+                seen = Seen()
         return seen
 
-    return mixed
+    return pixel_look
 
 
 @cache
@@ -171,7 +229,8 @@ def _shade_kernel(coats: tuple[Coat, ...], samples: int, fades: bool) -> Any:
     pixel_type = wp.vec3ub if is_opaque else wp.vec4ub
     color_at = stack_of(coats)
     look = fading_look(color_at) if fades else opaque_look(color_at)
-    mixed = _each_sample(look, samples) if fades else _each_triangle(look, samples)
+    is_even = all(coat.is_even for coat in coats) and not fades
+    pixel_look = _even_look(look, samples) if is_even else _pixel_look(look, samples, fades)
 
     @wp.kernel(enable_backward=False, module="unique")
     def shade(
@@ -181,8 +240,6 @@ def _shade_kernel(coats: tuple[Coat, ...], samples: int, fades: bool) -> Any:
         parameters: wp.array(dtype=StyleParameters),
         layers: LayerTables,
         triangle_of: wp.array2d(dtype=int),
-        sample_columns: wp.array(dtype=int),
-        sample_rows: wp.array(dtype=int),
         top: int,
         # Out:
         canvas_out: wp.array2d(dtype=pixel_type),
@@ -200,22 +257,15 @@ def _shade_kernel(coats: tuple[Coat, ...], samples: int, fades: bool) -> Any:
             shape=(wp.static(samples) * width,),
             dtype=int,
         )
-        here = Sample()
-        here.row = row
-        # as far as a pixel's corner is from its centre, also where a map stretches by a quarter
-        near = scene.pixel * 0.884
+        pixel = Sample()
+        pixel.row = row
+        pixel.extent = scene.pixel
+        y = scene.rows[row]
         column = int(0)
         while column < canvas_out.shape[1]:
-            first = column * wp.static(samples)
-            here.column = column
-            here.triangle = line[first]
-            seen = Seen()
-            if is_whole(line, first, width, wp.static(samples - 1)):
-                here.place = wp.vec2i(scene.columns[column], scene.rows[row])
-                here.offset = offset_of(here.place, scene.anchors[here.triangle])
-                seen = look(scene, parameters, layers, here)
-            if seen.clear < near:
-                seen = mixed(scene, parameters, layers, line, sample_columns, sample_rows, here)
+            pixel.column = column
+            pixel.place = wp.vec2i(scene.columns[column], y)
+            seen = pixel_look(scene, parameters, layers, line, pixel)
             canvas_out[row, column] = pixel_of(seen)
             column += 1
 
@@ -232,8 +282,6 @@ def record_shade(
     layers: Any,
     fades: bool,
     triangle_of: wp.array,
-    sample_columns: wp.array,
-    sample_rows: wp.array,
     top: int,
     canvas_out: wp.array,
 ) -> Phase:
@@ -248,11 +296,9 @@ def record_shade(
         layers: What fading triangles let through, `LayerTables`.
         fades: Whether any triangle fades; else `layers` is not looked at.
         triangle_of: Triangle of every sample of a band, see `gbuffer`.
-        sample_columns: Places of the samples of a row [2^-16 px], [columns times samples].
-        sample_rows: The same down, [rows times samples].
         top: The output row with which the band begins.
         canvas_out: Code values, [rows, columns]: vec3ub if a coat is opaque, else vec4ub with
             straight alpha.
     """
-    inputs = [scene, parameters, layers, triangle_of, sample_columns, sample_rows, top]
+    inputs = [scene, parameters, layers, triangle_of, top]
     return device.record(_shade_kernel(coats, samples, fades), inputs, [canvas_out])

@@ -10,7 +10,7 @@ from warp_kernels.scene import Scene, StyleParameters
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 
 LINE = 64
-"""Levels begin at whole multiples of so many bytes: the processor fetches so many at once."""
+"""Every level begins at a whole multiple of so many bytes, which the processor fetches at once."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,10 +117,13 @@ def texture_at(
     table = scene.levels[parameters.first_level]
     texels = footprint * float(wp.max(table[2], table[3]))
     detail = wp.clamp(wp.log2(wp.max(texels, 1.0e-6)), 0.0, last)
-    fine = wp.min(int(detail), wp.max(parameters.level_count - 2, 0))
-    part = detail - float(fine)
-    value = level_at(scene, parameters.first_level + fine, image, at, repeats)
-    if part > 0.0:
-        coarse = level_at(scene, parameters.first_level + fine + 1, image, at, repeats)
-        value = wp.lerp(value, coarse, part)
+    level = wp.min(int(detail), wp.max(parameters.level_count - 2, 0))
+    part = detail - float(level)
+    value = float(0.0)
+    weight = 1.0 - part
+    while weight > 0.0:
+        value += weight * level_at(scene, parameters.first_level + level, image, at, repeats)
+        level += 1
+        weight = part
+        part = 0.0
     return value

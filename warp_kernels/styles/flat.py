@@ -25,3 +25,4 @@ class Flat(Style):
     """
 
     shader: ClassVar[Any] = flat_color
+    is_even: ClassVar[bool] = True

@@ -5,10 +5,28 @@ from typing import Any, ClassVar
 
 import warp as wp
 
-from warp_kernels.scene import Ink, Sample, Scene, StyleParameters, full_ink
+from warp_kernels.scene import Ink, Numbers, Sample, Scene, StyleParameters, full_ink
 from warp_kernels.styles.style import Style
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
+
+
+@wp.func
+def prepare_gradient(scene: Scene, parameters: StyleParameters, triangle: int) -> Numbers:
+    """Linear colour from corner 0, the centroid, and whether the colour is curved."""
+    centre = (scene.sides[triangle, 0] + scene.sides[triangle, 1]) / 3.0
+    right = scene.gradients[triangle, 0]
+    down = scene.gradients[triangle, 1]
+    start = scene.colors[triangle] - centre[0] * right - centre[1] * down
+    result = Numbers()
+    for c in range(3):
+        result[c] = start[c]
+        result[3 + c] = right[c]
+        result[6 + c] = down[c]
+    result[9] = centre[0]
+    result[10] = centre[1]
+    result[11] = float(scene.curved[0])
+    return result
 
 
 @wp.func
@@ -17,9 +35,15 @@ def gradient_color(
 ) -> Ink:
     """The best linear or quadratic colour at the sample, within the range of code values."""
     t = sample.triangle
-    away = sample.offset - (scene.sides[t, 0] + scene.sides[t, 1]) / 3.0
-    color = scene.colors[t] + away[0] * scene.gradients[t, 0] + away[1] * scene.gradients[t, 1]
-    if scene.curved[0] != 0:
+    n = scene.prepared[parameters.row, t]
+    at = sample.offset
+    color = wp.vec3f(
+        n[0] + at[0] * n[3] + at[1] * n[6],
+        n[1] + at[0] * n[4] + at[1] * n[7],
+        n[2] + at[0] * n[5] + at[1] * n[8],
+    )
+    if n[11] != 0.0:
+        away = at - wp.vec2f(n[9], n[10])
         bent = away[0] * scene.curvatures[t, 1] + away[1] * scene.curvatures[t, 2]
         color += scene.curvatures[t, 0] + away[0] * bent
         color += away[1] * away[1] * scene.curvatures[t, 3]
@@ -38,3 +62,4 @@ class Gradient(Style):
 
     degree: ClassVar[int] = 1
     shader: ClassVar[Any] = gradient_color
+    prepare: ClassVar[Any] = prepare_gradient

@@ -1,4 +1,4 @@
-"""Pictures for triangles that need no file: the lower edge of a picture is a triangle's base edge."""
+"""Pictures for triangles that need no file; the lower edge of a picture is the base edge."""
 
 from collections.abc import Callable
 from functools import cache
@@ -9,9 +9,9 @@ SIDE = 512
 """Rows and columns of a picture."""
 FINER = 2
 """Samples per row and column that are averaged: no steps along slanted lines."""
-WHIRL = 0.13
+WHIRL = 0.16
 """How far along the sides of a nested triangle the next one has its corners."""
-NESTED = 16
+NESTED = 12
 """Triangles within each other; the innermost one is a thousandth of the area."""
 
 
@@ -36,7 +36,7 @@ def averaged(samples: np.ndarray) -> np.ndarray:
 def cushion() -> np.ndarray:
     """Raised in the middle, dark along the seams: brightness, 0 to 1, [rows, columns]."""
     height = 27.0 * np.prod(np.maximum(weights(), 0.0), axis=0)
-    return averaged(0.18 + 0.46 * np.sqrt(height) ** 1.2)
+    return averaged(0.24 + 0.36 * height**0.6)
 
 
 @cache
@@ -49,8 +49,8 @@ def nested_triangles() -> np.ndarray:
         place = np.tensordot(turn, place, axes=1)
         depth += (place >= 0).all(axis=0)
     share = depth / NESTED
-    stripes = np.where(depth % 2 == 0, -0.11, 0.11)
-    return averaged(0.34 + 0.34 * share + stripes)
+    stripes = np.where(depth % 2 == 0, -0.07, 0.07)
+    return averaged(0.42 + 0.2 * share + stripes)
 
 
 PICTURES: dict[str, Callable[[], np.ndarray]] = {

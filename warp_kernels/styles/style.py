@@ -51,6 +51,8 @@ class Style:
     """Least degree of the colour polynomial that the shader needs."""
     covers: ClassVar[bool] = True
     """Whether its ink is opaque everywhere."""
+    is_even: ClassVar[bool] = False
+    """Whether its ink is the same all over a triangle: borders are then drawn in less time."""
     needs_source: ClassVar[bool] = False
     """Whether the shader looks at the source picture."""
 
@@ -67,11 +69,6 @@ class Style:
     def is_opaque(self) -> bool:
         """Whether nothing can be transparent where it is drawn."""
         return self.covers and self.opacity == 1.0
-
-    @property
-    def line_width(self) -> float:
-        """Width of the edges that must be drawn beforehand [px of the picture], 0 for none."""
-        return 0.0
 
     def numbers(self) -> tuple[float, ...]:
         """At most sixteen numbers for the shader."""

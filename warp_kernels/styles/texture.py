@@ -44,7 +44,7 @@ def textured_color(
     up = wp.dot(upwards, sample.offset)
     at = wp.vec2f(1.0 - left - 0.5 * up, 1.0 - up)
     steep = wp.max(wp.length(across + 0.5 * upwards), wp.length(upwards))
-    value = texture_at(scene, parameters, 0, at, steep * scene.pixel, False)
+    value = texture_at(scene, parameters, 0, at, steep * sample.extent, False)
     brightness = 0.5 + parameters.numbers[0] * (value - 0.5)
     return full_ink(relit(ground_below(scene, sample, below), wp.clamp(brightness, 0.0, 1.0)))
 
