@@ -65,6 +65,20 @@ def declared_fields(module: str, name: str) -> tuple[DeclaredField, ...]:
         return tuple(_imported_fields(getattr(importlib.import_module(module), name)))
 
 
+def declared_summary(module: str, name: str) -> str:
+    """First line of a class's docstring.
+
+    Args:
+        module: Dotted name of the module in which it can be found.
+        name: Name of the class.
+    """
+    definition = _source(module).statements.get(name)
+    if isinstance(definition, ast.ImportFrom):
+        return declared_summary(str(definition.module), name)
+    text = ast.get_docstring(definition) if isinstance(definition, ast.ClassDef) else None
+    return (text or "").split("\n", maxsplit=1)[0]
+
+
 def own_first(cls: type) -> list[dataclasses.Field[Any]]:
     """Fields of an imported dataclass: its own, then those that it inherits.
 

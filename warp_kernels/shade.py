@@ -78,6 +78,19 @@ class Part:
     """Its middle from the centre of the pixel [half samples]."""
 
 
+@wp.func
+def sample_of(pixel: Sample, part: Part, anchor: wp.vec2i, sample_size: wp.vec2f) -> Sample:
+    """The middle of a part of a pixel, in a triangle with this anchor."""
+    step = 0.5 * wp.cw_mul(part.step, sample_size)
+    here = Sample()
+    here.triangle = part.triangle
+    here.place = pixel.place + wp.vec2i(int(wp.rint(step[0])), int(wp.rint(step[1])))
+    here.offset = offset_of(here.place, anchor)
+    here.row = pixel.row
+    here.column = pixel.column
+    return here
+
+
 @cache
 def _parts(samples: int) -> tuple[Any, Any, Any, Any]:
     """How a pixel falls apart: the type of its samples' triangles, and the kinds of its parts."""
@@ -186,9 +199,6 @@ def _pixel_look(look: Any, samples: int, fades: bool) -> Any:
         near = 0.884 * pixel.extent
         seen = Seen()
         seen.clear = FAR
-        here = Sample()
-        here.row = pixel.row
-        here.column = pixel.column
         left = int(wp.static(samples * samples))
         while left > 0:
             part = Part()
@@ -201,12 +211,9 @@ def _pixel_look(look: Any, samples: int, fades: bool) -> Any:
                 for k in range(wp.static(samples * samples)):
                     triangles[k] = wp.where(triangles[k] == part.triangle, -1, triangles[k])
             left -= part.count
-            step = 0.5 * wp.cw_mul(part.step, scene.sample_size)
-            here.triangle = part.triangle
-            here.place = pixel.place + wp.vec2i(int(wp.rint(step[0])), int(wp.rint(step[1])))
-            here.offset = offset_of(here.place, scene.anchors[here.triangle])
-            # as wide as a strip of so many samples beside the border
             share = float(part.count) * wp.static(1.0 / samples**2)
+            here = sample_of(pixel, part, scene.anchors[part.triangle], scene.sample_size)
+            # as wide as a strip of so many samples beside the border
             here.extent = pixel.extent * wp.max(share, wp.static(1.0 / samples))
             found = look(scene, parameters, layers, here)
             seen.color += share * found.color

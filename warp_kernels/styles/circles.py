@@ -78,6 +78,7 @@ class Circles(Style):
     )
 
     shader: ClassVar[Any] = packed_color
+    portraits: ClassVar[tuple[str, ...]] = ("paper + circles",)
     covers: ClassVar[bool] = False
 
     def numbers(self) -> tuple[float, ...]:

@@ -88,6 +88,7 @@ class Edges(Style):
     )
 
     shader: ClassVar[Any] = edge_color
+    portraits: ClassVar[tuple[str, ...]] = ("flat + edges", "source + edges:color=#fff,opacity=0.7")
     prepare: ClassVar[Any] = prepare_edges
     covers: ClassVar[bool] = False
 

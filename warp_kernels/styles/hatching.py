@@ -16,3 +16,4 @@ class Hatching(Drawn):
     """
 
     drawing: ClassVar[Drawing] = staticmethod(parallel_strokes)
+    portraits: ClassVar[tuple[str, ...]] = ("hatching", "hatching:colored=1")

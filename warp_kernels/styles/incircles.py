@@ -44,6 +44,9 @@ class Incircles(Style):
     )
 
     shader: ClassVar[Any] = incircle_color
+    portraits: ClassVar[tuple[str, ...]] = (
+        "paper:color=#0e1014,grain=0,sheets=0 + flat:opacity=0.3 + incircles",
+    )
     covers: ClassVar[bool] = False
 
     def numbers(self) -> tuple[float, ...]:

@@ -80,6 +80,7 @@ class Paper(Style):
     )
 
     shader: ClassVar[Any] = paper_color
+    portraits: ClassVar[tuple[str, ...]] = ("flat + paper:color=#fff,blend=multiply",)
 
     def numbers(self) -> tuple[float, ...]:
         """Red, green, blue [code values], grain, size, sheets."""

@@ -56,6 +56,10 @@ class Style:
     needs_source: ClassVar[bool] = False
     """Whether the shader looks at the source picture."""
 
+    portraits: ClassVar[tuple[str, ...]] = ()
+    """Stacks that show it well, such as `paper + circles`, the lowest style first; its name alone
+    if there are none."""
+
     def __post_init__(self) -> None:
         name = type(self).__name__.lower()
         for parameter in fields(self):

@@ -66,6 +66,7 @@ class Texture(Style):
     )
 
     shader: ClassVar[Any] = textured_color
+    portraits: ClassVar[tuple[str, ...]] = ("texture:cushion", "texture:triangle")
 
     def numbers(self) -> tuple[float, ...]:
         """Strength."""
