@@ -14,11 +14,9 @@ from warp_kernels.tones.tonal_art_map import (
 
 DRAWINGS = {
     "lines": (parallel_strokes, 0.22, 0.0, 0),
-    "thin lines": (parallel_strokes, 0.1, 0.0, 1),
-    "pencil": (parallel_strokes, 0.3, 1.0, 2),
+    "thin pencil": (parallel_strokes, 0.05, 1.0, 1),
     "crossings": (crossing_strokes, 0.2, 0.0, 0),
-    "thick crossings": (crossing_strokes, 0.5, 0.0, 1),
-    "crossings in pencil": (crossing_strokes, 0.2, 1.0, 2),
+    "thick crossings": (crossing_strokes, 0.6, 0.0, 2),
 }
 TONE_TOLERANCE = 0.02
 """Of a tone's nominal brightness and of its nominal ink."""
@@ -64,14 +62,14 @@ def test_cut_tile_has_a_seam() -> None:
     """The measure above finds the border of a tile that does not close."""
     tones = tonal_art_map(crossing_strokes, width=0.2, grain=0.0, seed=0)
     assert seam(tones[1:, :, 60:-77], 2) > 1.1
-    assert seam(tones[1:, 60:-77], 1) > 1.1
 
 
 def test_lines_are_drawn_by_hand(tones: np.ndarray) -> None:
-    """The first strokes waver, swell and end: no row or column of a light tone repeats."""
+    """Strokes waver, swell and end: along them nothing repeats, and no line is whole and even."""
     light = tones[1]
-    for lines in (light, light.T):
-        assert len(np.unique(lines, axis=0)) > 0.9 * len(lines)
+    assert len(np.unique(light, axis=1).T) == light.shape[1]
+    inked = light[(light < 1.0).any(axis=1)]
+    assert (inked.max(axis=1) - inked.min(axis=1) > 0.2).mean() > 0.8
 
 
 def test_a_seed_fixes_the_drawing() -> None:

@@ -1,8 +1,8 @@
-"""How shaders look into tonal art maps.
+"""How shaders look into tonal art maps: all that a pixel needs is one number of 64 bits.
 
-Neighbouring texels lie together, whatever the direction in which a line of pixels crosses the
-tile: blocks of 8 x 4 texels fill one line of the cache. Beside each texel lies that of the next
-darker tone, as a shader always needs both.
+It holds two tones, as a shader always needs a tone and the next darker one, of a texel and of
+those to its right, below it, and both; whole numbers then mix several of them at a time. Blocks
+of 4 x 2 texels fill a line of the cache, so that it serves lines of pixels in any direction.
 """
 
 import numpy as np
@@ -10,18 +10,25 @@ import warp as wp
 
 from warp_kernels.scene import Scene
 from warp_kernels.texture import LINE, Texture
-from warp_kernels.tones.ruling import SIDE
 from warp_kernels.tones.tonal_art_map import TONE_STEP, TONES
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 
-ACROSS, DOWN = 8, 4
+ACROSS, DOWN = 4, 2
 """Columns and rows of a block."""
 SMALLEST = 8
 """Side of the coarsest level that is kept: its texels are as wide as the tile has lines."""
+STEPS = 256
+"""Positions on a tile are whole numbers of so many steps per texel."""
 PAIRS = TONES - 1
 """Pairs of a tone and the next darker one."""
 
+_BYTES = wp.constant(wp.uint64(0x00FF00FF00FF00FF))
+"""The lower bytes of four numbers of 16 bits."""
+_WORDS = wp.constant(wp.uint64(0x0000FFFF0000FFFF))
+"""Those of two numbers of 32 bits."""
+_HALVES = wp.constant(wp.uint64(0x0080008000800080))
+"""1/2 in each of four numbers that are divided by 256."""
 _TONE_STEP = wp.constant(TONE_STEP)
 _PAIRS = wp.constant(PAIRS)
 
@@ -33,18 +40,23 @@ def packed_tones(tones: np.ndarray) -> Texture:
         tones: Brightness, [TONES, SIDE, SIDE].
 
     Returns:
-        Levels [PAIRS, side, 2 side] uint8; only their bytes in a row have a meaning.
+        Levels [PAIRS, side, 8 side] uint8.
     """
     levels = (level for level in Texture.of(tones).levels if level.shape[1] >= SMALLEST)
     return Texture(tuple(_packed(level) for level in levels))
 
 
 def _packed(level: np.ndarray) -> np.ndarray:
-    """Blocks of pairs of one level [TONES, side, side]."""
+    """Each texel of one level [TONES, side, side] with its neighbours, in two tones."""
     side = level.shape[1]
-    pairs = np.stack([level[:-1], level[1:]], axis=-1)
-    blocks = pairs.reshape(PAIRS, side // DOWN, DOWN, side // ACROSS, ACROSS, 2)
-    return np.ascontiguousarray(blocks.transpose(0, 1, 3, 2, 4, 5)).reshape(PAIRS, side, 2 * side)
+    packed = np.empty((PAIRS, side, side, 2, 2, 2), dtype=np.uint8)
+    for below in (0, 1):
+        for right in (0, 1):
+            neighbour = np.roll(level, (-below, -right), axis=(1, 2))
+            for darker in (0, 1):
+                packed[:, :, :, below, right, darker] = neighbour[darker : darker + PAIRS]
+    blocks = packed.reshape(PAIRS, side // DOWN, DOWN, side // ACROSS, ACROSS, 8)
+    return np.ascontiguousarray(blocks.swapaxes(2, 3)).reshape(PAIRS, side, 8 * side)
 
 
 @wp.func
@@ -76,64 +88,41 @@ def level_for(footprint: float, count: int) -> int:
 
 
 @wp.func
-def across(column: int) -> int:
-    """Where a column's texels are within a row of blocks [pairs]."""
-    return ((column >> 3) << 5) + (column & 7)
+def apart(bytes: wp.uint32) -> wp.uint64:
+    """Four bytes, each in 16 bits of its own."""
+    words = (wp.uint64(bytes) | (wp.uint64(bytes) << wp.uint64(16))) & _WORDS
+    return (words | (words << wp.uint64(8))) & _BYTES
 
 
 @wp.func
-def row_of_pairs(scene: Scene, line: int, side: int, row: int) -> wp.array(dtype=wp.uint16):
-    """The pairs of a row of texels; see `across`."""
-    pairs = (row >> 2) * (4 * side) + ((row & 3) << 3)
-    begin = scene.texels.ptr + wp.uint64(wp.static(LINE)) * wp.uint64(line)
-    # a plain array: its index is never negative and its stride is known
-    return wp.array(ptr=begin + wp.uint64(2 * pairs), shape=(4 * side,), dtype=wp.uint16)
+def between(a: wp.uint64, b: wp.uint64, part: int) -> wp.uint64:
+    """Numbers of 16 bits that are bytes, `part` / STEPS of the way from a to b, times STEPS."""
+    return a * wp.uint64(STEPS - part) + b * wp.uint64(part)
 
 
 @wp.func
-def apart(pair: wp.uint16) -> wp.uint32:
-    """Both texels of a pair, each in 16 bits of its own."""
-    both = wp.uint32(pair)
-    return (both | (both << wp.uint32(8))) & wp.uint32(0x00FF00FF)
-
-
-@wp.func
-def mixed_pairs(a: wp.uint32, b: wp.uint32, part: wp.uint32) -> wp.uint32:
-    """Both texels between those of two pairs, `part` / 256 of the way, times 256."""
-    return a * (wp.uint32(256) - part) + b * part
-
-
-@wp.func
-def halfway(pairs: wp.uint32) -> wp.uint32:
-    """Both texels divided by 256 and rounded."""
-    return ((pairs + wp.uint32(0x00800080)) >> wp.uint32(8)) & wp.uint32(0x00FF00FF)
-
-
-@wp.func
-def ink_at(scene: Scene, line: int, side: int, part: float, x: int, y: int) -> float:
+def ink_at(scene: Scene, begin: int, side: int, part: float, x: int, y: int) -> float:
     """Part of the paper that is inked, 0 to 1: between two tones, bilinear.
-
-    Whole numbers, and two texels at a time: this is most of what a pixel of hatching costs.
 
     Args:
         scene: Holds the texels.
-        line: Begin of the pair of tones in the level of detail [LINE bytes].
+        begin: Begin of the pair of tones in the level of detail [LINE bytes].
         side: Side of the level [texels].
         part: Share of the darker tone.
         x: Position to the right on the tile and its repetitions, from the first texel's centre
-            [1/256 texel of the level].
+            [STEPS per texel of the level].
         y: The same down.
     """
-    # the second mask says the same and tells the compiler that no index is negative
-    mask = (side - 1) & wp.static(SIDE - 1)
-    left = across((x >> 8) & mask)
-    next = across(((x >> 8) + 1) & mask)
-    upper = row_of_pairs(scene, line, side, (y >> 8) & mask)
-    lower = row_of_pairs(scene, line, side, ((y >> 8) + 1) & mask)
-    right = wp.uint32(x & 255)
-    above = halfway(mixed_pairs(apart(upper[left]), apart(upper[next]), right))
-    below = halfway(mixed_pairs(apart(lower[left]), apart(lower[next]), right))
-    both = mixed_pairs(above, below, wp.uint32(y & 255))
-    lighter = float(int(both & wp.uint32(0xFFFF)))
-    darker = float(int(both >> wp.uint32(16)))
-    return 1.0 - (lighter + part * (darker - lighter)) * wp.static(1.0 / (255.0 * 256.0))
+    mask = side - 1
+    row = (y >> 8) & mask
+    column = (x >> 8) & mask
+    texel = (row >> 1) * (2 * side) + ((column >> 2) << 3) + ((row & 1) << 2) + (column & 3)
+    address = scene.texels.ptr + wp.uint64(wp.static(LINE)) * wp.uint64(begin)
+    found = wp.array(ptr=address + wp.uint64(8 * texel), shape=(1,), dtype=wp.uint64)
+    four = found[0]
+    rows = between(apart(wp.uint32(four)), apart(wp.uint32(four >> wp.uint64(32))), y & 255)
+    whole = ((rows + _HALVES) >> wp.uint64(8)) & _BYTES
+    both = between(wp.uint64(wp.uint32(whole)), whole >> wp.uint64(32), x & 255)
+    lighter = float(int(both & wp.uint64(0xFFFF)))
+    darker = float(int(both >> wp.uint64(16)))
+    return 1.0 - (lighter + part * (darker - lighter)) * wp.static(1.0 / (255.0 * STEPS))

@@ -39,17 +39,22 @@ Drawing = Callable[[np.random.Generator, float, np.ndarray | None], Iterator[Ink
 [spacings] and the tooth of the paper."""
 
 
+def grown(width: float, growth: float) -> float:
+    """Width of lines that have grown from a thin one (0) to their distance (1) [spacings]."""
+    return width + growth * (1.0 - width)
+
+
 def parallel_strokes(
     rng: np.random.Generator, width: float, tooth: np.ndarray | None
 ) -> Iterator[Inking]:
     """Lines along the base edge: more of them, then thicker ones."""
     lines = Ruling(rng, ACROSS, SPACING)
-    for grown, pressure in ((1.0, 0.85), (1.6, 0.9)):
+    for growth, pressure in ((0.0, 0.85), (0.2, 0.9)):
         for begin in (0.0, 0.5):
-            touch = Touch(min(1.0, grown * width), pressure, begin, begin + 0.5)
+            touch = Touch(grown(width, growth), pressure, begin, begin + 0.5)
             yield from lines.strokes(rng, touch, tooth)
-    for grown in (2.3, 2.85, 3.4):
-        yield from lines.strokes(rng, Touch(min(1.0, grown * width), 0.95), tooth)
+    for growth in (0.45, 0.65, 0.85):
+        yield from lines.strokes(rng, Touch(grown(width, growth), 0.95), tooth)
     while True:
         yield from lines.strokes(rng, Touch(1.0, 1.0), tooth)
 
@@ -66,23 +71,25 @@ def crossing_strokes(
         Ruling(rng, direction, SPACING, shift=0.5, uneven=0.1)
         for direction in (ACROSS, FALLING, RISING)
     )
-    for lines, begin, end, grown in (
-        (first, 0.0, 0.5, 1.0),
-        (first, 0.5, 1.0, 1.0),
-        (across, 0.0, 0.5, 1.0),
-        (across, 0.5, 1.0, 1.0),
-        (back, 0.0, 0.5, 1.0),
-        (between, 0.0, 1.0, 1.0),
-        (back, 0.5, 1.0, 1.0),
-        (across_between, 0.0, 1.0, 1.1),
-        (slanted, 0.0, 1.0, 1.2),
-        (back_between, 0.0, 1.0, 1.2),
-        (first, 0.0, 1.0, 1.8),
-        (across, 0.0, 1.0, 1.8),
-        (back, 0.0, 1.0, 1.8),
-        (between, 0.0, 1.0, 2.0),
+    for lines, begin, end, growth in (
+        (first, 0.0, 0.5, 0.0),
+        (first, 0.5, 1.0, 0.0),
+        (across, 0.0, 0.5, 0.0),
+        (across, 0.5, 1.0, 0.0),
+        (back, 0.0, 0.5, 0.0),
+        (between, 0.0, 1.0, 0.0),
+        (back, 0.5, 1.0, 0.0),
+        (across_between, 0.0, 1.0, 0.03),
+        (slanted, 0.0, 1.0, 0.05),
+        (back_between, 0.0, 1.0, 0.05),
+        (first, 0.0, 1.0, 0.2),
+        (across, 0.0, 1.0, 0.2),
+        (back, 0.0, 1.0, 0.2),
+        (between, 0.0, 1.0, 0.25),
+        (across_between, 0.0, 1.0, 0.25),
     ):
-        yield from lines.strokes(rng, Touch(min(1.0, grown * width), 0.9, begin, end), tooth)
+        touch = Touch(grown(width, growth), 0.9, begin, end)
+        yield from lines.strokes(rng, touch, tooth)
     while True:
         yield from first.strokes(rng, Touch(1.0, 1.0), tooth)
 
