@@ -81,7 +81,7 @@ def run_solve(arguments: argparse.Namespace) -> None:
         arguments: What the user gave; options that were left out are absent.
     """
     # Looks, which a preset may hold, do not belong to a track.
-    job = _job(arguments, track=arguments.output, styles=())
+    job = _job(arguments, track=arguments.output, styles=(), regions=())
     with _progress(arguments) as progress:
         if job.jobs > 1:
             from pipeline.parts import solve_in_parts

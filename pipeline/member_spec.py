@@ -11,6 +11,7 @@ import numpy as np
 
 from pipeline.declared import own_first
 from stages.gray import read_gray
+from stages.regions import Region
 from warp_kernels.errors import OptionError
 
 _SWITCHES = {"true": True, "yes": True, "1": True, "false": False, "no": False, "0": False}
@@ -46,6 +47,29 @@ def parse_member(flag: str, text: str, registry: Mapping[str, type]) -> Any:
     except OptionError as error:
         problem = str(error).removeprefix(f"{text}: ")
         raise OptionError(f"{flag} {text}: {problem}") from error
+
+
+def parse_region(flag: str, text: str, styles: Mapping[str, type]) -> Region:
+    """Make a region.
+
+    Args:
+        flag: The option, for messages, such as `--region`.
+        text: `MASK:STYLE`; the name of the mask may hold colons.
+        styles: Styles by name.
+
+    Raises:
+        OptionError: If there is no mask or no such style.
+        MediaError: If a picture that is a parameter cannot be read.
+    """
+    parts = text.split(":")
+    for number in range(1, len(parts)):
+        if parts[number] in styles:
+            style = parse_member(flag, ":".join(parts[number:]), styles)
+            return Region(":".join(parts[:number]), style)
+    raise OptionError(
+        f"{flag} {text}: write MASK:STYLE, such as mask.png:hatching; styles are "
+        f"{', '.join(styles)}"
+    )
 
 
 def _parameters(cls: type) -> dict[str, Any]:

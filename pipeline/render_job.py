@@ -38,6 +38,7 @@ def render_job(look: Job, track: TrackReader, source: Path | None) -> RenderJob:
     """
     header = track.header
     job = replace(header.job, output=look.output, encode=look.encode, styles=look.styles)
+    job = replace(job, regions=look.regions)
     job = replace(job, output_size=None, scale=None, track=None, resume=False, jobs=1)
     job = replace(job, output_size=look.output_size, scale=look.scale)
     job = replace(job, blend=look.blend, smooth=look.smooth)

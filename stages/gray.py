@@ -21,4 +21,9 @@ def read_gray(path: str) -> np.ndarray:
         MediaError: If it cannot be read.
     """
     with open_decoder(path) as decoder:
-        return next(decoder).pixels @ np.array(LUMA) / 255.0
+        return gray_of(next(decoder).pixels)
+
+
+def gray_of(pixels: np.ndarray) -> np.ndarray:
+    """Brightness of code values [h, w, 3], 0 (black) to 1 (white), [h, w] float64."""
+    return pixels @ np.array(LUMA) / 255.0

@@ -1,5 +1,7 @@
 """Draw a snapshot in any stack of styles at any size."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from stages.fading import Fading
@@ -21,6 +23,7 @@ class Renderer:
         picture: Width and height of the source [px].
         output: Width and height of what is drawn [px].
         styles: Bottom to top.
+        masked: Styles over these, each inside of a mask, bottom to top.
 
     Raises:
         OptionError: If the output is too large or has no pixel.
@@ -33,19 +36,21 @@ class Renderer:
         picture: tuple[int, int],
         output: tuple[int, int],
         styles: tuple[Style, ...],
+        masked: tuple[Style, ...] = (),
     ) -> None:
         if not 1 <= min(output) <= max(output) <= MAX_SIDE:
             raise OptionError(
                 f"an output of {output[0]}x{output[1]}: sides must lie between 1 and {MAX_SIDE} px"
             )
-        textures = [style.texture(read_gray) for style in styles]
-        self._canvas = Canvas(device, picture, output, styles, textures)
+        textures = [style.texture(read_gray) for style in (*styles, *masked)]
+        self._canvas = Canvas(device, picture, output, styles, masked, textures)
 
     def render(
         self,
         snapshot: Snapshot,
         fading: Fading | None = None,
         source: np.ndarray | None = None,
+        masks: Sequence[np.ndarray] = (),
     ) -> np.ndarray:
         """Draw a snapshot.
 
@@ -54,6 +59,7 @@ class Renderer:
             fading: What lingers of the frames before it, if anything; it ends with the snapshot.
             source: The picture from which it was made [code values], [H, W, 3] uint8; needed if a
                 style does.
+            masks: For each masked style where it is drawn (255) and where not (0), [H, W] uint8.
 
         Returns:
             Code values, [rows, columns, 3] uint8, or [rows, columns, 4] with straight alpha if no
@@ -67,4 +73,5 @@ class Renderer:
             paint=paint,
             layers=layers,
             source=source,
+            masks=masks,
         )

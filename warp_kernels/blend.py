@@ -16,7 +16,7 @@ from typing import Any
 
 import warp as wp
 
-from warp_kernels.scene import FAR, Sample, Scene, StyleParameters
+from warp_kernels.scene import FAR, FIXED, FRACTION_BITS, Sample, Scene, StyleParameters
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 
@@ -37,6 +37,8 @@ class Coat:
     """Whether it leaves no gaps."""
     is_even: bool
     """Whether its ink is the same all over a triangle."""
+    is_masked: bool = False
+    """Whether it is drawn inside of a mask alone."""
 
 
 @wp.func
@@ -138,6 +140,30 @@ def lay_on_nothing(below: wp.vec4f, color: wp.vec3f, opacity: float) -> wp.vec4f
     return wp.vec4f(color[0], color[1], color[2], opacity)
 
 
+@wp.func
+def mask_at(masks: wp.array2d(dtype=wp.uint8), first: int, rows: int, place: wp.vec2i) -> float:
+    """A mask at a place [2^-16 px], bilinear, 0 to 1.
+
+    Args:
+        masks: All masks.
+        first: The first row of this one.
+        rows: Its rows.
+        place: The place.
+    """
+    x = place[0] - wp.static(1 << (FRACTION_BITS - 1))
+    y = place[1] - wp.static(1 << (FRACTION_BITS - 1))
+    right = float(x & wp.static((1 << FRACTION_BITS) - 1)) / FIXED
+    down = float(y & wp.static((1 << FRACTION_BITS) - 1)) / FIXED
+    share = float(0.0)
+    for i in range(2):
+        for j in range(2):
+            row = first + wp.clamp((y >> wp.static(FRACTION_BITS)) + i, 0, rows - 1)
+            column = wp.clamp((x >> wp.static(FRACTION_BITS)) + j, 0, masks.shape[1] - 1)
+            weight = wp.where(i == 0, 1.0 - down, down) * wp.where(j == 0, 1.0 - right, right)
+            share += weight * float(masks[row, column])
+    return share / 255.0
+
+
 @cache
 def stack_of(coats: tuple[Coat, ...]) -> Any:
     """A wp.func `(Scene, array of StyleParameters, Sample) -> Coated`.
@@ -158,7 +184,7 @@ def stack_of(coats: tuple[Coat, ...]) -> Any:
 
         return nothing
     top, layer = coats[-1].shader, len(coats) - 1
-    below = stack_of(coats[:-1])
+    below, is_masked = stack_of(coats[:-1]), coats[-1].is_masked
     on_opaque = any(coat.is_opaque for coat in coats[:-1])
     lay = _laid(coats[-1].blend, on_opaque) if len(coats) > 1 else lay_on_nothing
     cover = inked_on_opaque if on_opaque else inked
@@ -175,6 +201,10 @@ def stack_of(coats: tuple[Coat, ...]) -> Any:
         own = parameters[wp.static(layer)]
         ink = top(scene, own, sample, under)
         coated.calm = wp.min(coated.calm, ink.calm)
+        if wp.static(is_masked):
+            coated.calm = 0.0
+            row = own.mask * scene.mask_rows
+            ink.opacity *= mask_at(scene.masks, row, scene.mask_rows, sample.place)
         coated.color = cover(under, lay(under, ink.color, ink.opacity * own.opacity), ink.coverage)
         return coated
 

@@ -1,5 +1,6 @@
 """Every device array of one output, and the recorded launches that draw a mesh into it."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -33,7 +34,8 @@ class Canvas:
         picture: Width and height of the picture that the meshes cover [px].
         output: Width and height of the output [px], at most MAX_SIDE each.
         styles: Bottom to top.
-        textures: What the shader of each style looks into, or None.
+        masked: Styles over these, each inside of a mask.
+        textures: What the shader of each style looks into, or None; masked ones last.
     """
 
     def __init__(
@@ -42,16 +44,19 @@ class Canvas:
         picture: tuple[int, int],
         output: tuple[int, int],
         styles: tuple[Style, ...],
+        masked: tuple[Style, ...],
         textures: list[Texture | None],
     ) -> None:
         self.device = device
         self.picture = picture
         self.output = output
         self.samples = max(1, min(SAMPLES, MAX_SIDE // max(output)))
-        self._coats = tuple(
-            Coat(style.shader, style.blend, style.is_opaque, style.covers, style.is_even)
-            for style in styles
+        self._coats = (
+            *(Coat(s.shader, s.blend, s.is_opaque, s.covers, s.is_even) for s in styles),
+            *(Coat(s.shader, s.blend, False, s.covers, False, True) for s in masked),
         )
+        self._masked = len(masked)
+        styles = (*styles, *masked)
         self._prepares = {i: s.prepare for i, s in enumerate(styles) if s.prepare is not None}
         width, height = output
         columns = width * self.samples
@@ -73,6 +78,8 @@ class Canvas:
             "curved": self._curved,
             "source": self.device.empty(size, wp.vec3ub),
             "source_step": step,
+            "masks": self.device.empty((max(1, self._masked * height), width), wp.uint8),
+            "mask_rows": height,
             "columns": self._filled(centres(width, self.output[0]), int),
             "rows": self._filled(centres(height, self.output[1]), int),
             "pixel": float(np.sqrt((0.5 / np.square(self._scale)).sum())),
@@ -87,6 +94,7 @@ class Canvas:
         self._steady["levels"] = self._filled(levels, wp.vec4i)
         packed = np.zeros(max(1, len(styles)), dtype=StyleParameters.numpy_dtype())
         packed["row"] = np.arange(len(packed))
+        packed["mask"] = np.arange(len(packed)) - (len(styles) - self._masked)
         for row, style, (first, count) in zip(packed, styles, ranges, strict=False):
             numbers = style.numbers()
             row["numbers"].reshape(-1)[: len(numbers)] = numbers
@@ -101,6 +109,7 @@ class Canvas:
         paint: Paint,
         layers: Layers | None = None,
         source: np.ndarray | None = None,
+        masks: Sequence[np.ndarray] = (),
     ) -> np.ndarray:
         """Draw a mesh.
 
@@ -110,6 +119,7 @@ class Canvas:
             paint: The triangles, then the M - T vanished ones that show through.
             layers: What fading triangles let through; None where none fades, M is T then.
             source: The picture [code values], [H, W, 3] uint8; looked at if a style needs it.
+            masks: For each masked style where it is drawn (255) and where not (0), [H, W] uint8.
 
         Returns:
             Code values, [rows, columns, 3] uint8, or [rows, columns, 4] with straight alpha if no
@@ -129,6 +139,8 @@ class Canvas:
         self._write_paint(paint, shapes=not is_even or layers is not None)
         if source is not None and self._steady["source"].size > 1:
             self.device.write(self._steady["source"], reduced(source, self._steady["source_step"]))
+        if masks:
+            self.device.write(self._steady["masks"], np.concatenate(masks))
         for preparing in self._preparing:
             preparing.resize(len(paint.colors))
         phases = list(self._preparing)

@@ -32,6 +32,8 @@ class StyleParameters:
     """Levels of its texture, 0 if it has none."""
     row: int
     """Its row of `Scene.prepared`."""
+    mask: int
+    """Number of its mask, if it has one."""
 
 
 @wp.struct
@@ -64,6 +66,10 @@ class Scene:
     """The source picture, smaller by the factor `source_step`; empty unless a style needs it."""
     source_step: int
     """Pixels of the picture, across and down, that are one of `source`."""
+    masks: wp.array2d(dtype=wp.uint8)
+    """Where masked styles are drawn, 255 for fully; masks of the picture, one below the other."""
+    mask_rows: int
+    """Rows of a mask."""
     texels: wp.array(dtype=wp.uint8)
     """The textures of all styles; see `texture`."""
     levels: wp.array(dtype=wp.vec4i)
