@@ -80,13 +80,13 @@ def declared_summary(module: str, name: str) -> str:
 
 
 def own_first(cls: type) -> list[dataclasses.Field[Any]]:
-    """Fields of an imported dataclass: its own, then those that it inherits.
+    """Fields of an imported dataclass: its own, then those that it inherits, the nearest first.
 
     Args:
         cls: The dataclass.
     """
-    own = inspect.get_annotations(cls)
-    return sorted(dataclasses.fields(cls), key=lambda field: field.name not in own)
+    order = [name for base in cls.__mro__ for name in inspect.get_annotations(base)]
+    return sorted(dataclasses.fields(cls), key=lambda field: order.index(field.name))
 
 
 def declared_registry(reference: str) -> dict[str, tuple[DeclaredField, ...]]:
