@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from stages.edits import turn_base_edge
+from stages.edits import flip_edges, turn_base_edge
+from stages.fading import Fading
 from stages.mesh import Mesh, mesh_of
 from stages.render import Renderer
 from tests.snapshots import snapshot_with
@@ -129,6 +130,20 @@ def test_each_triangle_has_strokes_of_its_own(device: str) -> None:
     np.testing.assert_array_equal(pictures[0], pictures[1])
     for other in pictures[2:]:
         assert np.abs(other - pictures[0]).mean() > 30
+
+
+def test_strokes_fade_with_births_and_deaths(device: str) -> None:
+    """Where triangles replace others their strokes come as slowly as their colours."""
+    mesh = two_triangles()
+    color = np.full((2, 3), 120.0)
+    before = snapshot_with(mesh, color)
+    diagonal = np.flatnonzero(mesh.twins >= 0)[:1]
+    after = snapshot_with(flip_edges(mesh, diagonal), color, index=1)
+    fading = Fading.begin(before, 8).followed_by(after)
+    renderer = Renderer(Device(device), (WIDTH, HEIGHT), (WIDTH, HEIGHT), (Hatching(),))
+    old, new = (renderer.render(snapshot).astype(float) for snapshot in (before, after))
+    mixed = renderer.render(after, fading).astype(float)
+    assert 0.0 < np.abs(mixed - old).mean() < 0.3 * np.abs(new - old).mean()
 
 
 def test_packed_tones_are_where_shaders_look() -> None:
