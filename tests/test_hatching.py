@@ -14,6 +14,7 @@ from warp_kernels.device import Device
 from warp_kernels.errors import OptionError
 from warp_kernels.styles.crosshatching import Crosshatching
 from warp_kernels.styles.drawn import Drawn
+from warp_kernels.styles.flat import Flat
 from warp_kernels.styles.hatching import Hatching
 from warp_kernels.tones.lookup import PAIRS, packed_tones
 from warp_kernels.tones.tonal_art_map import DARKEST
@@ -86,6 +87,22 @@ def test_strokes_fade_in(kind: type[Drawn], device: str) -> None:
         change = (before / 255.0) ** 2 - (after / 255.0) ** 2
         assert change.max() <= 0.05
         assert change.min() >= -0.01
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_strokes_without_paper_lie_on_what_is_below(kind: type[Drawn], device: str) -> None:
+    """Over flat colours they look as on paper of that colour; over nothing there is alpha."""
+    snapshot = snapshot_with(two_triangles(), np.tile((90, 160, 200), (2, 1)))
+    alone, on_paper = kind(paper="none"), kind(paper="#5aa0c8")
+    stacks = ((Flat(), alone), (on_paper,), (alone,))
+    over, paper, bare = (
+        Renderer(Device(device), (WIDTH, HEIGHT), (WIDTH, HEIGHT), stack).render(snapshot)
+        for stack in stacks
+    )
+    np.testing.assert_allclose(over.astype(int), paper, atol=2)
+    assert over.std() > 20
+    assert bare.shape[2] == 4
+    assert set(np.unique(bare[..., 3])) >= {0, 128, 255}
 
 
 @pytest.mark.parametrize("first_id", [0, 1, 2, 5])

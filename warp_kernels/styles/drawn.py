@@ -96,9 +96,9 @@ class Drawn(Style):
         return strokes_alone if self.paper == NO_PAPER else strokes_on_paper
 
     @property
-    def is_opaque(self) -> bool:
+    def covers(self) -> bool:
         """Whether there is paper."""
-        return self.paper != NO_PAPER and super().is_opaque
+        return self.paper != NO_PAPER
 
     def numbers(self) -> tuple[float, ...]:
         """In the order of `tones.strokes`."""
