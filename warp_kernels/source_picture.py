@@ -39,10 +39,10 @@ def reduced(pixels: np.ndarray, step: int) -> np.ndarray:
 
 
 @wp.func
-def _pixel(scene: Scene, row: int, column: int) -> wp.vec3f:
-    """A pixel of the picture, or the nearest one."""
-    color = scene.source[
-        wp.clamp(row, 0, scene.source.shape[0] - 1), wp.clamp(column, 0, scene.source.shape[1] - 1)
+def _pixel(picture: wp.array2d(dtype=wp.vec3ub), row: int, column: int) -> wp.vec3f:
+    """A pixel of the picture, or the nearest one; without the scene, which would be copied."""
+    color = picture[
+        wp.clamp(row, 0, picture.shape[0] - 1), wp.clamp(column, 0, picture.shape[1] - 1)
     ]
     return wp.vec3f(float(color[0]), float(color[1]), float(color[2]))
 
@@ -56,6 +56,9 @@ def source_at(scene: Scene, place: wp.vec2i) -> wp.vec3f:
     row = y >> _BITS
     right = float(x & _MASK) / FIXED
     down = float(y & _MASK) / FIXED
-    above = wp.lerp(_pixel(scene, row, column), _pixel(scene, row, column + 1), right)
-    below = wp.lerp(_pixel(scene, row + 1, column), _pixel(scene, row + 1, column + 1), right)
-    return wp.lerp(above, below, down)
+    color = wp.vec3f()
+    for i in range(2):
+        for j in range(2):
+            weight = wp.where(i == 0, 1.0 - down, down) * wp.where(j == 0, 1.0 - right, right)
+            color += weight * _pixel(scene.source, row + i, column + j)
+    return color

@@ -71,9 +71,18 @@ def _wrapped(index: int, count: int, repeats: bool) -> int:
 
 
 @wp.func
-def level_at(scene: Scene, level: int, image: int, at: wp.vec2f, repeats: bool) -> float:
-    """Brightness of one level, bilinear; see `texture_at`."""
-    table = scene.levels[level]
+def level_at(
+    texels: wp.array(dtype=wp.uint8), table: wp.vec4i, image: int, at: wp.vec2f, repeats: bool
+) -> float:
+    """Brightness of one level, bilinear; see `texture_at`.
+
+    Args:
+        texels: Those of all textures.
+        table: The level's row of `Scene.levels`.
+        image: Number of the image.
+        at: Position, right and down; an image is the unit square.
+        repeats: Whether the image is a tile.
+    """
     x = at[0] * float(table[3]) - 0.5
     y = at[1] * float(table[2]) - 0.5
     column = int(wp.floor(x))
@@ -85,12 +94,8 @@ def level_at(scene: Scene, level: int, image: int, at: wp.vec2f, repeats: bool) 
     lower = first + _wrapped(row + 1, table[2], repeats) * table[3]
     left_column = _wrapped(column, table[3], repeats)
     right_column = _wrapped(column + 1, table[3], repeats)
-    above = wp.lerp(
-        float(scene.texels[upper + left_column]), float(scene.texels[upper + right_column]), right
-    )
-    below = wp.lerp(
-        float(scene.texels[lower + left_column]), float(scene.texels[lower + right_column]), right
-    )
+    above = wp.lerp(float(texels[upper + left_column]), float(texels[upper + right_column]), right)
+    below = wp.lerp(float(texels[lower + left_column]), float(texels[lower + right_column]), right)
     return wp.lerp(above, below, down) * wp.static(1.0 / 255.0)
 
 
@@ -122,7 +127,8 @@ def texture_at(
     value = float(0.0)
     weight = 1.0 - part
     while weight > 0.0:
-        value += weight * level_at(scene, parameters.first_level + level, image, at, repeats)
+        table = scene.levels[parameters.first_level + level]
+        value += weight * level_at(scene.texels, table, image, at, repeats)
         level += 1
         weight = part
         part = 0.0
