@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from stages.edits import turn_base_edge
+from stages.edits import flip_edges, turn_base_edge
+from stages.fading import Fading
 from stages.mesh import Mesh, mesh_of
 from stages.render import Renderer
 from tests.snapshots import snapshot_with
@@ -13,6 +14,7 @@ from warp_kernels.device import Device
 from warp_kernels.errors import OptionError
 from warp_kernels.styles.crosshatching import Crosshatching
 from warp_kernels.styles.drawn import Drawn
+from warp_kernels.styles.flat import Flat
 from warp_kernels.styles.hatching import Hatching
 from warp_kernels.tones.lookup import PAIRS, packed_tones
 from warp_kernels.tones.tonal_art_map import DARKEST
@@ -87,6 +89,22 @@ def test_strokes_fade_in(kind: type[Drawn], device: str) -> None:
         assert change.min() >= -0.01
 
 
+@pytest.mark.parametrize("kind", KINDS)
+def test_strokes_without_paper_lie_on_what_is_below(kind: type[Drawn], device: str) -> None:
+    """Over flat colours they look as on paper of that colour; over nothing there is alpha."""
+    snapshot = snapshot_with(two_triangles(), np.tile((90, 160, 200), (2, 1)))
+    alone, on_paper = kind(paper="none"), kind(paper="#5aa0c8")
+    stacks = ((Flat(), alone), (on_paper,), (alone,))
+    over, paper, bare = (
+        Renderer(Device(device), (WIDTH, HEIGHT), (WIDTH, HEIGHT), stack).render(snapshot)
+        for stack in stacks
+    )
+    np.testing.assert_allclose(over.astype(int), paper, atol=2)
+    assert over.std() > 20
+    assert bare.shape[2] == 4
+    assert set(np.unique(bare[..., 3])) >= {0, 128, 255}
+
+
 @pytest.mark.parametrize("first_id", [0, 1, 2, 5])
 def test_strokes_follow_the_base_edge(first_id: int, device: str) -> None:
     """They lie along a side; turning the base edge goes through all sides and back."""
@@ -129,6 +147,20 @@ def test_each_triangle_has_strokes_of_its_own(device: str) -> None:
     np.testing.assert_array_equal(pictures[0], pictures[1])
     for other in pictures[2:]:
         assert np.abs(other - pictures[0]).mean() > 30
+
+
+def test_strokes_fade_with_births_and_deaths(device: str) -> None:
+    """Where triangles replace others their strokes come as slowly as their colours."""
+    mesh = two_triangles()
+    color = np.full((2, 3), 120.0)
+    before = snapshot_with(mesh, color)
+    diagonal = np.flatnonzero(mesh.twins >= 0)[:1]
+    after = snapshot_with(flip_edges(mesh, diagonal), color, index=1)
+    fading = Fading.begin(before, 8).followed_by(after)
+    renderer = Renderer(Device(device), (WIDTH, HEIGHT), (WIDTH, HEIGHT), (Hatching(),))
+    old, new = (renderer.render(snapshot).astype(float) for snapshot in (before, after))
+    mixed = renderer.render(after, fading).astype(float)
+    assert 0.0 < np.abs(mixed - old).mean() < 0.3 * np.abs(new - old).mean()
 
 
 def test_packed_tones_are_where_shaders_look() -> None:

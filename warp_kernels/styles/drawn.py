@@ -5,6 +5,7 @@ from functools import cache
 from math import cos, radians, sin
 from typing import Any, ClassVar
 
+from warp_kernels.errors import OptionError
 from warp_kernels.styles.color import parse_color
 from warp_kernels.styles.style import ReadPicture, Style
 from warp_kernels.texture import Texture
@@ -20,6 +21,7 @@ NO_PAPER = "none"
 class Drawn(Style):
     """Strokes of a pen or a pencil, denser where the picture is darker.
 
+    Without paper they darken what lies below: over `flat` that is the paper's Fig. 1, left.
     They lie in the plane of the picture, so all of them have one width, and they are fixed to the
     centre and the base edge of their triangle: they move with it and in no other way.
 
@@ -83,8 +85,10 @@ class Drawn(Style):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if self.paper != NO_PAPER:
-            parse_color(self.paper)
+        try:
+            parse_color(self.paper if self.paper != NO_PAPER else "#fff")
+        except OptionError as error:
+            raise OptionError(f"{error}, or {NO_PAPER}") from error
 
     @property
     def shader(self) -> Any:
@@ -92,9 +96,9 @@ class Drawn(Style):
         return strokes_alone if self.paper == NO_PAPER else strokes_on_paper
 
     @property
-    def is_opaque(self) -> bool:
+    def covers(self) -> bool:
         """Whether there is paper."""
-        return self.paper != NO_PAPER and super().is_opaque
+        return self.paper != NO_PAPER
 
     def numbers(self) -> tuple[float, ...]:
         """In the order of `tones.strokes`."""
