@@ -100,12 +100,27 @@ def level_at(
 
 
 @wp.func
+def detail_for(scene: Scene, parameters: StyleParameters, footprint: float) -> float:
+    """The level of a style's texture whose texels are as large as pixels, between two of them.
+
+    Args:
+        scene: Holds the texels.
+        parameters: Says which are the style's.
+        footprint: Size of an output pixel, as a part of the image's longer side.
+    """
+    table = scene.levels[parameters.first_level]
+    texels = footprint * float(wp.max(table[2], table[3]))
+    last = float(parameters.level_count - 1)
+    return wp.clamp(wp.log2(wp.max(texels, 1.0e-6)), 0.0, last)
+
+
+@wp.func
 def texture_at(
     scene: Scene,
     parameters: StyleParameters,
     image: int,
     at: wp.vec2f,
-    footprint: float,
+    detail: float,
     repeats: bool,
 ) -> float:
     """Brightness of a style's texture, 0 to 1, trilinear.
@@ -115,13 +130,9 @@ def texture_at(
         parameters: Says which are the style's.
         image: Number of the image, such as a tone.
         at: Position, right and down; an image is the unit square.
-        footprint: Size of an output pixel there, as a part of the image's longer side.
+        detail: See `detail_for`.
         repeats: Whether the image is a tile, else its border goes on for ever.
     """
-    last = float(parameters.level_count - 1)
-    table = scene.levels[parameters.first_level]
-    texels = footprint * float(wp.max(table[2], table[3]))
-    detail = wp.clamp(wp.log2(wp.max(texels, 1.0e-6)), 0.0, last)
     level = wp.min(int(detail), wp.max(parameters.level_count - 2, 0))
     part = detail - float(level)
     value = float(0.0)

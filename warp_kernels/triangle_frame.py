@@ -8,23 +8,10 @@ wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 
 
 @wp.func
-def perpendicular(v: wp.vec2f) -> wp.vec2f:
-    """A vector turned by a quarter: from the base edge to the inside of its triangle."""
-    return wp.vec2f(-v[1], v[0])
-
-
-@wp.func
 def base_direction(scene: Scene, triangle: int) -> wp.vec2f:
     """Unit vector along the base edge."""
     base = scene.sides[triangle, 0]
     return base / wp.max(wp.length(base), 1.0e-6)
-
-
-@wp.func
-def along_base(scene: Scene, sample: Sample) -> wp.vec2f:
-    """Position along the base edge and from it to the inside, counted from corner 0 [px]."""
-    base = base_direction(scene, sample.triangle)
-    return wp.vec2f(wp.dot(base, sample.offset), wp.dot(perpendicular(base), sample.offset))
 
 
 @wp.func

@@ -7,13 +7,13 @@ from typing import Any, ClassVar
 import numpy as np
 import warp as wp
 
-from warp_kernels.scene import Ink, Sample, Scene, StyleParameters, full_ink
+from warp_kernels.scene import Ink, Numbers, Sample, Scene, StyleParameters, full_ink
 from warp_kernels.styles.color import parse_color
 from warp_kernels.styles.style import ReadPicture, Style
 from warp_kernels.styles.texture import relit
 from warp_kernels.texture import Texture as Texels
-from warp_kernels.texture import texture_at
-from warp_kernels.triangle_frame import along_base, chance
+from warp_kernels.texture import detail_for, texture_at
+from warp_kernels.triangle_frame import base_direction, chance
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 
@@ -41,14 +41,28 @@ def grain() -> np.ndarray:
 
 
 @wp.func
+def prepare_paper(scene: Scene, parameters: StyleParameters, triangle: int) -> Numbers:
+    """Where a triangle lies on the tile, how it is turned there, its brightness and the detail."""
+    base = base_direction(scene, triangle) / parameters.numbers[4]
+    result = Numbers()
+    result[0] = base[0]
+    result[1] = base[1]
+    result[2] = chance(scene, triangle, 0)
+    result[3] = chance(scene, triangle, 1)
+    result[4] = 0.5 + parameters.numbers[5] * (chance(scene, triangle, 2) - 0.5)
+    result[5] = detail_for(scene, parameters, scene.pixel / parameters.numbers[4])
+    return result
+
+
+@wp.func
 def paper_color(scene: Scene, parameters: StyleParameters, sample: Sample, below: wp.vec4f) -> Ink:
     """The paper's colour, relit by the grain; each triangle lies elsewhere in the tile."""
-    side = parameters.numbers[4]
-    at = along_base(scene, sample) / side
-    at += wp.vec2f(chance(scene, sample.triangle, 0), chance(scene, sample.triangle, 1))
-    value = texture_at(scene, parameters, 0, at, sample.extent / side, True)
-    sheet = chance(scene, sample.triangle, 2) - 0.5
-    brightness = 0.5 + parameters.numbers[3] * (value - 0.5) + parameters.numbers[5] * sheet
+    n = scene.prepared[parameters.row, sample.triangle]
+    x = sample.offset[0]
+    y = sample.offset[1]
+    at = wp.vec2f(n[2] + n[0] * x + n[1] * y, n[3] + n[0] * y - n[1] * x)
+    value = texture_at(scene, parameters, 0, at, n[5], True)
+    brightness = n[4] + parameters.numbers[3] * (value - 0.5)
     color = wp.vec3f(parameters.numbers[0], parameters.numbers[1], parameters.numbers[2])
     return full_ink(relit(color, wp.clamp(brightness, 0.0, 1.0)))
 
@@ -80,6 +94,7 @@ class Paper(Style):
     )
 
     shader: ClassVar[Any] = paper_color
+    prepare: ClassVar[Any] = prepare_paper
     portraits: ClassVar[tuple[str, ...]] = ("flat + paper:color=#fff,blend=multiply",)
 
     def numbers(self) -> tuple[float, ...]:

@@ -60,7 +60,7 @@ class Shrink(Style):
         metadata={"help": "width of the gaps", "unit": "px of the source", "range": (0.0, 100.0)},
     )
     smallest: float = field(
-        default=0.4,
+        default=0.55,
         metadata={"help": "least part of its size that a triangle keeps", "range": (0.0, 1.0)},
     )
     rounding: float = field(

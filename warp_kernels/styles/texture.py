@@ -6,11 +6,11 @@ from typing import Any, ClassVar
 import warp as wp
 
 from warp_kernels.errors import OptionError, TrimotionError
-from warp_kernels.scene import Ink, Sample, Scene, StyleParameters, full_ink
+from warp_kernels.scene import Ink, Numbers, Sample, Scene, StyleParameters, full_ink
 from warp_kernels.styles.pictures import PICTURES
 from warp_kernels.styles.style import ReadPicture, Style
 from warp_kernels.texture import Texture as Texels
-from warp_kernels.texture import texture_at
+from warp_kernels.texture import detail_for, texture_at
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 
@@ -31,20 +31,31 @@ def relit(color: wp.vec3f, brightness: float) -> wp.vec3f:
 
 
 @wp.func
+def prepare_texture(scene: Scene, parameters: StyleParameters, triangle: int) -> Numbers:
+    """Change of the position in the picture per px, to the left and upwards, and the detail."""
+    first = scene.sides[triangle, 0]
+    second = scene.sides[triangle, 1]
+    area = wp.max(wp.abs(first[0] * second[1] - first[1] * second[0]), 1.0e-6)
+    up = wp.vec2f(-first[1], first[0]) / area
+    left = wp.vec2f(second[1], -second[0]) / area + 0.5 * up
+    result = Numbers()
+    for i in range(2):
+        result[i] = left[i]
+        result[2 + i] = up[i]
+    steep = wp.max(wp.length(left), wp.length(up))
+    result[4] = detail_for(scene, parameters, steep * scene.pixel)
+    return result
+
+
+@wp.func
 def textured_color(
     scene: Scene, parameters: StyleParameters, sample: Sample, below: wp.vec4f
 ) -> Ink:
     """What lies below, relit by the texture; the picture's lower edge is the base edge."""
-    first = scene.sides[sample.triangle, 0]
-    second = scene.sides[sample.triangle, 1]
-    area = wp.max(wp.abs(first[0] * second[1] - first[1] * second[0]), 1.0e-6)
-    across = wp.vec2f(second[1], -second[0]) / area
-    upwards = wp.vec2f(-first[1], first[0]) / area
-    left = wp.dot(across, sample.offset)
-    up = wp.dot(upwards, sample.offset)
-    at = wp.vec2f(1.0 - left - 0.5 * up, 1.0 - up)
-    steep = wp.max(wp.length(across + 0.5 * upwards), wp.length(upwards))
-    value = texture_at(scene, parameters, 0, at, steep * sample.extent, False)
+    n = scene.prepared[parameters.row, sample.triangle]
+    left = n[0] * sample.offset[0] + n[1] * sample.offset[1]
+    up = n[2] * sample.offset[0] + n[3] * sample.offset[1]
+    value = texture_at(scene, parameters, 0, wp.vec2f(1.0 - left, 1.0 - up), n[4], False)
     brightness = 0.5 + parameters.numbers[0] * (value - 0.5)
     return full_ink(relit(ground_below(scene, sample, below), wp.clamp(brightness, 0.0, 1.0)))
 
@@ -66,6 +77,7 @@ class Texture(Style):
     )
 
     shader: ClassVar[Any] = textured_color
+    prepare: ClassVar[Any] = prepare_texture
     portraits: ClassVar[tuple[str, ...]] = ("texture:cushion", "texture:triangle")
 
     def numbers(self) -> tuple[float, ...]:
