@@ -1,6 +1,7 @@
 """Every device array of one output, and the recorded launches that draw a mesh into it."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -51,10 +52,7 @@ class Canvas:
         self.picture = picture
         self.output = output
         self.samples = max(1, min(SAMPLES, MAX_SIDE // max(output)))
-        self._coats = (
-            *(Coat(s.shader, s.blend, s.is_opaque, s.covers, s.is_even) for s in styles),
-            *(Coat(s.shader, s.blend, False, s.covers, False, True) for s in masked),
-        )
+        self._coats = coats_of(styles, masked)
         self._masked = len(masked)
         styles = (*styles, *masked)
         self._prepares = {i: s.prepare for i, s in enumerate(styles) if s.prepare is not None}
@@ -277,6 +275,20 @@ class Canvas:
         array = self.device.empty(len(values), dtype)
         self.device.write(array, values)
         return array
+
+
+def coats_of(styles: tuple[Style, ...], masked: tuple[Style, ...]) -> tuple[Coat, ...]:
+    """What a kernel depends on; over an opaque style it does not matter whether one is opaque.
+
+    Args:
+        styles: Bottom to top.
+        masked: Those over them that are drawn inside of masks.
+    """
+    coats = [Coat(s.shader, s.blend, s.is_opaque, s.covers, s.is_even) for s in styles]
+    for number in range(1, len(coats)):
+        if any(coat.is_opaque for coat in coats[:number]):
+            coats[number] = replace(coats[number], is_opaque=False)
+    return *coats, *(Coat(s.shader, s.blend, False, s.covers, False, True) for s in masked)
 
 
 def centres(side: int, count: int) -> np.ndarray:
