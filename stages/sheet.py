@@ -11,6 +11,8 @@ CAPTION = 26
 """Height of a caption [px]."""
 LETTERS = 0.42
 """Size of letters relative to that of the font."""
+MARGIN = 1.25
+"""How much wider letters may be drawn than they are said to be."""
 INK = (40, 40, 40)
 """Colour of letters [code values]."""
 
@@ -41,6 +43,6 @@ def sheet_of(pictures: Sequence[np.ndarray], captions: Sequence[str], columns: i
 def _write(sheet: np.ndarray, text: str, at: tuple[int, int], width: int) -> None:
     """Write a line that is at most so wide [px]."""
     font = cv2.FONT_HERSHEY_DUPLEX
-    needed = cv2.getTextSize(text, font, LETTERS, 1)[0][0]
+    needed = MARGIN * cv2.getTextSize(text, font, LETTERS, 1)[0][0]
     size = LETTERS * min(1.0, width / max(1, needed))
     cv2.putText(sheet, text, at, font, size, INK, 1, cv2.LINE_AA)

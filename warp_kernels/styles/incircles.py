@@ -45,7 +45,7 @@ class Incircles(Style):
 
     shader: ClassVar[Any] = incircle_color
     portraits: ClassVar[tuple[str, ...]] = (
-        "paper:color=#0e1014,grain=0,sheets=0 + flat:opacity=0.3 + incircles",
+        "paper:color=#111,grain=0 + flat:opacity=0.3 + incircles",
     )
     covers: ClassVar[bool] = False
 

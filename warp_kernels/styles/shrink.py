@@ -69,7 +69,7 @@ class Shrink(Style):
     )
 
     shader: ClassVar[Any] = shrunk_color
-    portraits: ClassVar[tuple[str, ...]] = ("paper:color=#15130f,grain=0,sheets=0 + shrink",)
+    portraits: ClassVar[tuple[str, ...]] = ("paper:color=#111,grain=0 + shrink",)
     covers: ClassVar[bool] = False
 
     def numbers(self) -> tuple[float, ...]:
