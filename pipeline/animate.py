@@ -18,6 +18,7 @@ from pipeline.past import Past, open_track, past_of
 from pipeline.progress import Progress
 from pipeline.rows_around import rows_around
 from pipeline.shots import with_shots
+from pipeline.source_pictures import source_pictures
 from pipeline.steps import Step, check_cuts, open_around, steps
 from pipeline.stream import Behind, ahead
 from pipeline.take import Take
@@ -60,6 +61,8 @@ class Solved:
     """Its triangles and colours."""
     shot: int
     """Number of the frame with which its shot begins."""
+    source: np.ndarray | None = None
+    """Its picture [code values], [H, W, 3]; None unless a look needs it."""
     is_stored: bool = False
     """Whether the track holds it already."""
 
@@ -122,9 +125,10 @@ def render(job: Job, track: TrackReader, info: MediaInfo, progress: Progress) ->
     tally = _Tally(progress, len(shown))
     drawing = Drawing(job, info, device)
     with drawing, Behind(drawing.draw, SOLVED_BEHIND) as writer:
-        for snapshot, row in zip(_fitted(track, rows, job, device), rows, strict=True):
+        fitted, sources = _fitted(track, rows, job, device), source_pictures(job, rows)
+        for snapshot, row, source in zip(fitted, rows, sources, strict=True):
             is_shown = shown[0].frame <= row.frame <= shown[-1].frame
-            writer.put(Take(snapshot, row.shot, is_shown))
+            writer.put(Take(snapshot, row.shot, is_shown, source))
             if is_shown:
                 tally.add(row.triangle_count, snapshot.rmse)
     return tally.result(begun, (), drawing.notes)
@@ -210,16 +214,18 @@ def _solve(
             snapshot = snapshot.again(step.frame)
         else:
             snapshot = triangulator.next(step.frame, advect(snapshot.mesh, step.passage))
-        yield Solved(snapshot, step.shot)
+        yield Solved(snapshot, step.shot, step.frame.pixels if job.needs_source else None)
 
 
 def _recall(job: Job, tally: "_Tally", writer: Behind[Solved] | None) -> None:
     """Count what the track holds already, and draw it if that is wanted."""
     assert job.track is not None
     with TrackReader(job.track) as track:
-        for row in track.rows_in(job.frame_range):
+        rows = track.rows_in(job.frame_range)
+        sources = source_pictures(job, rows) if writer is not None else [None] * len(rows)
+        for row, source in zip(rows, sources, strict=True):
             if writer is not None:
-                writer.put(Solved(track.snapshot(row.frame), row.shot, is_stored=True))
+                writer.put(Solved(track.snapshot(row.frame), row.shot, source, is_stored=True))
             tally.add(row.triangle_count, row.rmse, is_told=writer is not None)
 
 
@@ -288,4 +294,4 @@ class _Writer:
         if self._track is not None and not solved.is_stored:
             self._track.write(solved.snapshot, solved.shot)
         if self._drawing is not None:
-            self._drawing.draw(Take(solved.snapshot, solved.shot))
+            self._drawing.draw(Take(solved.snapshot, solved.shot, source=solved.source))

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from pipeline.job import Job
-from pipeline.member_spec import parse_member
+from pipeline.member_spec import parse_member, parse_region
 from stages.flows import FLOWS
 from stages.layouts import LAYOUTS
 from stages.media import FrameRange, parse_time
@@ -37,6 +37,8 @@ def build_job(given: Mapping[str, Any]) -> Job:
             values[name] = parse_member(f"--{name}", given[name], registry)
     specs = given.get("styles", ())
     values["styles"] = tuple(parse_member("--style", spec, STYLES) for spec in specs)
+    regions = given.get("regions", ())
+    values["regions"] = tuple(parse_region("--region", text, STYLES) for text in regions)
     _check_cuts(values.get("cuts"))
     job: Job = fill(Job, values)
     return job

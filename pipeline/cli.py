@@ -81,7 +81,7 @@ def run_solve(arguments: argparse.Namespace) -> None:
         arguments: What the user gave; options that were left out are absent.
     """
     # Looks, which a preset may hold, do not belong to a track.
-    job = _job(arguments, track=arguments.output, styles=())
+    job = _job(arguments, track=arguments.output, styles=(), regions=())
     with _progress(arguments) as progress:
         if job.jobs > 1:
             from pipeline.parts import solve_in_parts
@@ -166,6 +166,23 @@ def run_measure(arguments: argparse.Namespace) -> None:
     print(report.as_json() if arguments.json else report.as_table())
 
 
+def run_styles(arguments: argparse.Namespace) -> None:
+    """Print the styles, or draw them.
+
+    Args:
+        arguments: What the user gave.
+    """
+    if arguments.sheet is None:
+        from pipeline.style_list import list_styles
+
+        print(list_styles(as_json=arguments.json))
+        return
+    from pipeline.style_sheet import draw_sheet
+
+    triangles, overwrite = arguments.triangles, arguments.overwrite
+    draw_sheet(arguments.picture, arguments.sheet, triangles=triangles, overwrite=overwrite)
+
+
 COMMANDS: dict[str, Callable[[argparse.Namespace], None]] = {
     "animate": run_animate,
     "solve": run_solve,
@@ -174,6 +191,7 @@ COMMANDS: dict[str, Callable[[argparse.Namespace], None]] = {
     "join": run_join,
     "info": run_info,
     "measure": run_measure,
+    "styles": run_styles,
 }
 """What each subcommand runs."""
 

@@ -9,6 +9,7 @@ not literal is imported after all: slower, never wrong.
 import ast
 import dataclasses
 import importlib
+import inspect
 import runpy
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -48,7 +49,7 @@ class _NotLiteralError(Exception):
 
 
 def declared_fields(module: str, name: str) -> tuple[DeclaredField, ...]:
-    """Fields of a dataclass, in order.
+    """Fields of a dataclass, in order; those that it inherits come last.
 
     Args:
         module: Dotted name of the module in which it can be found.
@@ -62,6 +63,30 @@ def declared_fields(module: str, name: str) -> tuple[DeclaredField, ...]:
         return tuple(_read_fields(source, definition))
     except _NotLiteralError:
         return tuple(_imported_fields(getattr(importlib.import_module(module), name)))
+
+
+def declared_summary(module: str, name: str) -> str:
+    """First line of a class's docstring.
+
+    Args:
+        module: Dotted name of the module in which it can be found.
+        name: Name of the class.
+    """
+    definition = _source(module).statements.get(name)
+    if isinstance(definition, ast.ImportFrom):
+        return declared_summary(str(definition.module), name)
+    text = ast.get_docstring(definition) if isinstance(definition, ast.ClassDef) else None
+    return (text or "").split("\n", maxsplit=1)[0]
+
+
+def own_first(cls: type) -> list[dataclasses.Field[Any]]:
+    """Fields of an imported dataclass: its own, then those that it inherits, the nearest first.
+
+    Args:
+        cls: The dataclass.
+    """
+    order = [name for base in cls.__mro__ for name in inspect.get_annotations(base)]
+    return sorted(dataclasses.fields(cls), key=lambda field: order.index(field.name))
 
 
 def declared_registry(reference: str) -> dict[str, tuple[DeclaredField, ...]]:
@@ -191,7 +216,7 @@ def _iterable(source: _Source, node: ast.expr) -> Iterable[Any]:
 
 
 def _read_fields(source: _Source, definition: ast.stmt | None) -> Iterator[DeclaredField]:
-    """Fields that a class statement declares."""
+    """Fields that a class statement declares, then those of its bases."""
     if not isinstance(definition, ast.ClassDef):
         raise _NotLiteralError
     for statement in definition.body:
@@ -199,6 +224,9 @@ def _read_fields(source: _Source, definition: ast.stmt | None) -> Iterator[Decla
             kind = ast.unparse(statement.annotation)
             if not kind.startswith("ClassVar"):
                 yield _read_field(source, definition.name, statement.target.id, kind, statement)
+    for base in definition.bases:
+        if isinstance(base, ast.Name) and base.id in source.statements:
+            yield from declared_fields(source.module, base.id)
 
 
 def _read_field(
@@ -220,7 +248,7 @@ def _read_field(
 
 def _imported_fields(cls: type) -> Iterator[DeclaredField]:
     """The same from the class itself."""
-    for declared in dataclasses.fields(cls):
+    for declared in own_first(cls):
         kind = declared.type if isinstance(declared.type, str) else _kind_of(declared.type)
         factory: Callable[[], Any] | Any = declared.default_factory
         yield DeclaredField(

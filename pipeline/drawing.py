@@ -8,6 +8,7 @@ from pipeline.smooth import Smoother
 from pipeline.take import Take
 from stages.fading import Fading
 from stages.media import MediaInfo, check_output, open_encoder
+from stages.regions import open_masks
 from stages.render import Renderer
 from warp_kernels.device import Device
 
@@ -28,7 +29,9 @@ class Drawing:
     def __init__(self, job: Job, info: MediaInfo, device: Device) -> None:
         picture = (info.width, info.height)
         size = job.size_for(picture)
-        self._renderer = Renderer(device, picture, size, job.shown_styles)
+        masked = tuple(region.style for region in job.regions)
+        self._renderer = Renderer(device, picture, size, job.shown_styles, masked)
+        self._masks = open_masks(job.regions, picture)
         self._encoder = open_encoder(job.output, info, size, job.encode, job.frame_range)
         # Where every frame starts anew, triangles of the same number have nothing in common.
         self._blend = 0 if job.independent else job.blend
@@ -55,7 +58,8 @@ class Drawing:
             self._shot = take.shot
         if take.is_shown:
             snapshot = take.snapshot
-            pixels = self._renderer.render(snapshot, self._fading)
+            masks = [mask.at(snapshot.frame_index) for mask in self._masks]
+            pixels = self._renderer.render(snapshot, self._fading, take.source, masks)
             self._encoder.write(pixels, snapshot.pts, snapshot.time_base, snapshot.frame_index)
 
     def __enter__(self) -> "Drawing":
@@ -69,12 +73,18 @@ class Drawing:
         trace: TracebackType | None,
     ) -> None:
         if error is not None:
+            self._close_masks()
             self._encoder.__exit__(kind, error, trace)
             return
         with ExitStack() as closing:
             closing.push(self._encoder)  # a failure of the last frames leaves nothing either
+            closing.callback(self._close_masks)
             for take in self._smoother.rest():
                 self._draw(take)
+
+    def _close_masks(self) -> None:
+        for mask in self._masks:
+            mask.close()
 
 
 def check_drawing(job: Job, info: MediaInfo) -> None:
@@ -86,7 +96,10 @@ def check_drawing(job: Job, info: MediaInfo) -> None:
 
     Raises:
         OptionError: If an option does not fit the source.
+        MediaError: If a mask cannot be read.
         OutputError: If the output cannot be written.
     """
+    for mask in open_masks(job.regions, (info.width, info.height)):
+        mask.close()
     size = job.size_for((info.width, info.height))
     check_output(job.output, info, size, job.encode, job.frame_range)

@@ -20,6 +20,7 @@ from stages.flows.dis import Dis
 from stages.layouts import Layout
 from stages.layouts.importance import Importance
 from stages.media import EncodeOptions, FrameRange
+from stages.regions import Region
 from stages.triangulate import TriangulateOptions
 from warp_kernels.color_model import CONSTANT, LINEAR, ColorModel
 from warp_kernels.errors import OptionError
@@ -100,6 +101,17 @@ class Job:
         },
     )
     """Looks, bottom to top; empty for the one that suits the colour model."""
+    regions: tuple[Region, ...] = field(
+        default=(),
+        metadata={
+            "help": "a style inside of a mask, over the others, repeatable: a still, numbered "
+            "stills or a video of the source's size, white where the style is drawn",
+            "metavar": "MASK:STYLE",
+            "flag": "region",
+            "group": "look",
+        },
+    )
+    """Styles inside of masks, over `styles`, bottom to top."""
     output_size: tuple[int, int] | None = field(
         default=None,
         metadata={
@@ -208,8 +220,18 @@ class Job:
     @property
     def fitted(self) -> ColorModel:
         """The colour model of the snapshots: the optimised one, or what a look needs beyond."""
-        drawn = LINEAR if any(style.degree > 0 for style in self.shown_styles) else CONSTANT
+        drawn = LINEAR if any(style.degree > 0 for style in self._all_styles) else CONSTANT
         return max(self.triangulate.model, drawn, key=lambda model: model.degree)
+
+    @property
+    def needs_source(self) -> bool:
+        """Whether a look shows the source picture."""
+        return any(style.needs_source for style in self._all_styles)
+
+    @property
+    def _all_styles(self) -> tuple[Style, ...]:
+        """Looks of the whole picture and of regions."""
+        return (*self.shown_styles, *(region.style for region in self.regions))
 
     def size_for(self, source_size: tuple[int, int]) -> tuple[int, int]:
         """Size of the output for a source.

@@ -1,6 +1,5 @@
 """Members of a registry as users write them: `edges:width=1.5,color=#222`, `importance:MAP.png`."""
 
-import dataclasses
 import math
 import types
 import typing
@@ -10,11 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from stages.media import open_decoder
+from pipeline.declared import own_first
+from stages.gray import read_gray
+from stages.regions import Region
 from warp_kernels.errors import OptionError
-
-LUMA = (0.2126, 0.7152, 0.0722)
-"""Weights of red, green and blue in grey, as BT.709 has them."""
 
 _SWITCHES = {"true": True, "yes": True, "1": True, "false": False, "no": False, "0": False}
 
@@ -51,11 +49,34 @@ def parse_member(flag: str, text: str, registry: Mapping[str, type]) -> Any:
         raise OptionError(f"{flag} {text}: {problem}") from error
 
 
+def parse_region(flag: str, text: str, styles: Mapping[str, type]) -> Region:
+    """Make a region.
+
+    Args:
+        flag: The option, for messages, such as `--region`.
+        text: `MASK:STYLE`; the name of the mask may hold colons.
+        styles: Styles by name.
+
+    Raises:
+        OptionError: If there is no mask or no such style.
+        MediaError: If a picture that is a parameter cannot be read.
+    """
+    parts = text.split(":")
+    for number in range(1, len(parts)):
+        if parts[number] in styles:
+            style = parse_member(flag, ":".join(parts[number:]), styles)
+            return Region(":".join(parts[:number]), style)
+    raise OptionError(
+        f"{flag} {text}: write MASK:STYLE, such as mask.png:hatching; styles are "
+        f"{', '.join(styles)}"
+    )
+
+
 def _parameters(cls: type) -> dict[str, Any]:
-    """Types of a dataclass's parameters, without None, by name."""
+    """Types of a dataclass's parameters, without None, by name; its own before inherited ones."""
     hints = typing.get_type_hints(cls)
-    fields = dataclasses.fields(cls)
-    return {field.name: _without_none(hints[field.name]) for field in fields if field.init}
+    fields = (field for field in own_first(cls) if field.init)
+    return {field.name: _without_none(hints[field.name]) for field in fields}
 
 
 def _without_none(hint: Any) -> Any:
@@ -93,14 +114,8 @@ def _convert(what: str, text: str, kind: Any) -> Any:
     except (ValueError, KeyError):
         pass
     if kind is np.ndarray:
-        return _read_gray(text)
+        return read_gray(text)
     if kind in (str, Path):
         return kind(text)
     wanted = {bool: "true or false", int: "a whole number", float: "a number"}[kind]
     raise OptionError(f"{what}={text}: write {wanted}")
-
-
-def _read_gray(path: str) -> np.ndarray:
-    """The first frame of a picture as grey, [h, w] float64, 0 (black) to 1 (white)."""
-    with open_decoder(path) as decoder:
-        return next(decoder).pixels @ np.array(LUMA) / 255.0

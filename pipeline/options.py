@@ -89,7 +89,7 @@ class Option:
     @property
     def is_repeatable(self) -> bool:
         """Whether every use adds a value."""
-        return self.declared.kind.startswith("tuple") and "registry" in self.declared.metadata
+        return self.declared.kind.endswith(", ...]")
 
     @property
     def group(self) -> str:

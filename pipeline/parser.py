@@ -31,6 +31,7 @@ commands:
   join A.mtrk B.mtrk ... -o OUT.mtrk   put the tracks of ranges together
   info FILE                  what a file is: a source or a mesh track
   measure SOURCE OUTPUT      how close an output is to its source, and how coherent
+  styles                     all styles and their parameters; --sheet draws them
 
 trimotion COMMAND --help tells the options of a command.
 
@@ -84,6 +85,7 @@ def build_parser() -> argparse.ArgumentParser:
     _add_join(commands)
     _add_info(commands)
     _add_measure(commands)
+    _add_styles(commands)
     return parser
 
 
@@ -236,6 +238,31 @@ def _add_measure(commands: Any) -> None:
     parser.add_argument("--json", action="store_true", help="print JSON, with every frame")
     add_range_options(parser)
     _add_telling(parser.add_argument_group("messages"))
+
+
+def _add_styles(commands: Any) -> None:
+    parser = _command(
+        commands,
+        "styles",
+        "Print all styles with their parameters, or draw one portrait in every style.",
+        "trimotion styles [--json] [PICTURE] [--sheet OUT.png]",
+        "",
+    )
+    parser.add_argument(
+        "picture",
+        metavar="PICTURE",
+        nargs="?",
+        type=text_value,
+        help="what the sheet shows (default: the portrait among the sample clips)",
+    )
+    parser.add_argument(
+        "--sheet", metavar="OUT.png", type=text_value, help="write a picture of all styles"
+    )
+    parser.add_argument(
+        "--triangles", metavar="N", type=whole_number, default=900, help="triangles of the sheet"
+    )
+    parser.add_argument("--overwrite", action="store_true", help="replace an existing sheet")
+    parser.add_argument("--json", action="store_true", help="print JSON")
 
 
 def _command(

@@ -38,12 +38,13 @@ def render_job(look: Job, track: TrackReader, source: Path | None) -> RenderJob:
     """
     header = track.header
     job = replace(header.job, output=look.output, encode=look.encode, styles=look.styles)
+    job = replace(job, regions=look.regions)
     job = replace(job, output_size=None, scale=None, track=None, resume=False, jobs=1)
     job = replace(job, output_size=look.output_size, scale=look.scale)
     job = replace(job, blend=look.blend, smooth=look.smooth)
     job = replace(job, device=look.device, threads=look.threads)
     job = replace(job, frame_range=_range(look.frame_range, track))
-    found, problem = _find(source, track, is_needed=job.fitted != header.model)
+    found, problem = _find(source, track, _needs(job, track))
     info = header.info
     notes = []
     if found is None:
@@ -75,8 +76,24 @@ def _range(wanted: FrameRange, track: TrackReader) -> FrameRange:
     return wanted
 
 
-def _find(named: Path | None, track: TrackReader, *, is_needed: bool) -> tuple[Path | None, str]:
-    """The source, or None and why it cannot be used."""
+def _needs(job: Job, track: TrackReader) -> str:
+    """What a look finds in the source alone; nothing if the track is enough."""
+    if job.needs_source:
+        return "a look that shows the source"
+    model = track.header.model
+    if job.fitted != model:
+        return f"a look that needs colours other than the track's {model.name} ones"
+    return ""
+
+
+def _find(named: Path | None, track: TrackReader, needed: str) -> tuple[Path | None, str]:
+    """The source, or None and why it cannot be used.
+
+    Args:
+        named: Where the user says that it is, or None.
+        track: The track.
+        needed: What needs it; nothing if it can be done without.
+    """
     header = track.header
     if named is not None:
         header.source.check(named)
@@ -87,11 +104,11 @@ def _find(named: Path | None, track: TrackReader, *, is_needed: bool) -> tuple[P
             raise MediaError(path, "the source is not there", "say with --source where it is")
         header.source.check(path)
     except (MediaError, TrackError) as error:
-        if is_needed:
+        if needed:
+            reason = str(error).removeprefix(f"{path}: ")
             raise MediaError(
                 path,
-                f"a look that needs colours other than the track's {header.model.name} ones "
-                f"needs the source ({str(error).removeprefix(f'{path}: ')})",
+                f"{needed} needs the source ({reason})",
                 "say with --source where it is",
             ) from error
         return None, str(error).split(";")[0]

@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from stages.snapshot import Snapshot
 
 
@@ -15,3 +17,5 @@ class Take:
     """Number of the frame with which its shot begins."""
     is_shown: bool = True
     """Whether it is part of the output, or only there for those around it."""
+    source: np.ndarray | None = None
+    """The picture that it was made from [code values], [H, W, 3]; None unless a look needs it."""

@@ -15,9 +15,10 @@ from stages.advect import sliding
 from stages.correspond import by_vertex_id, kept_triangles, kept_vertices
 from stages.mesh import Mesh
 from stages.overlaps import overlaps
-from stages.paint import Paint, joined_paint, paint_of
+from stages.paint import paint_of
 from stages.snapshot import Snapshot
 from warp_kernels.layers import Layers
+from warp_kernels.paint import Paint, joined_paint
 
 MATURE = -(1 << 40)
 """Birth of what was there from the beginning, or replaces nothing: it never fades."""
@@ -46,14 +47,12 @@ class Origins:
 class Vanished:
     """The triangles that went with one step, as they were in the frame before."""
 
-    lines: np.ndarray
-    """Their sides, as `Layers` has them, [G, 3, 3]."""
     paint: Paint
-    """Their colours."""
+    """Their shapes and colours."""
     origins: Origins
     """Where they came from themselves."""
     maps: np.ndarray
-    """The way there, as `Layers` has it, for those that were fading; [G, 2, 3]."""
+    """The way there, for those that were fading: linear part and translation [px]; [G, 2, 3]."""
     links: np.ndarray
     """For one new triangle of the step after the other, which of these it lies over; [L]."""
 
@@ -69,7 +68,7 @@ class Fading:
     mesh: Mesh
     """Its triangles."""
     paint: Paint
-    """Their colours."""
+    """Their shapes and colours."""
     origins: Origins
     """Where they came from."""
     vanished: dict[int, Vanished]
@@ -129,41 +128,44 @@ class Fading:
         fading = np.flatnonzero(self._is_young(origins))
         maps = np.zeros((len(gone), 2, 3))
         maps[fading] = _maps(corners[fading], origins.corners[fading])
-        return Vanished(_lines(corners), self.paint.of(gone), origins, maps, links)
+        paint = self.paint.of(gone)
+        return Vanished(paint, origins, maps, links)
 
     def layers(self) -> tuple[Paint, Layers | None]:
-        """What is drawn: the colours of all layers, and how they lie over each other.
+        """What is drawn: all layers, and how they lie over each other.
 
         Returns:
-            The colours of the triangles alone and None if none of them fades.
+            The triangles alone and None if none of them fades.
         """
         young = np.flatnonzero(self._is_young(self.origins))
         if len(young) == 0:
             return self.paint, None
         batches = [self.vanished[step] for step in sorted(self.vanished)]
-        sizes = [self.mesh.triangle_count, *(len(batch.lines) for batch in batches)]
+        sizes = [self.mesh.triangle_count, *(len(batch.paint.colors) for batch in batches)]
         begins = np.cumsum(sizes) - sizes
         links, link_begins = self._links(batches, begins[1:])
+        paint = joined_paint([self.paint, *(batch.paint for batch in batches)])
         table = Layers(
             weights=np.ones(sum(sizes), np.float32),
-            maps=np.zeros((sum(sizes), 2, 3), np.float32),
+            turns=np.zeros((sum(sizes), 2, 2), np.float32),
+            departures=np.zeros((sum(sizes), 2)),
             spans=np.zeros((sum(sizes), 2), np.int32),
             links=links,
-            lines=np.zeros((sum(sizes), 3, 3), np.float32),
         )
         own, origins = self.mesh.vertices[by_vertex_id(self.mesh, young)], self.origins.of(young)
         parts = [(young, origins, _maps(own, origins.corners))]
         for begin, batch in zip(begins[1:], batches, strict=True):
-            table.lines[begin : begin + len(batch.lines)] = batch.lines
             fading = np.flatnonzero(self._is_young(batch.origins))
             parts.append((begin + fading, batch.origins.of(fading), batch.maps[fading]))
         for layers, origins, maps in parts:
             ages = self.step - origins.births
             share = (ages + 1) / (self.frames + 1) + _stretch(maps) / STRETCH
             table.weights[layers] = _opacity(share)
-            table.maps[layers] = maps
+            anchors = paint.corners[layers, 0]
+            table.turns[layers] = maps[:, :, :2]
+            table.departures[layers] = _mapped(maps, anchors)
             table.spans[layers] = origins.spans + link_begins[ages][:, None]
-        return joined_paint([self.paint, *(batch.paint for batch in batches)]), table
+        return paint, table
 
     def _is_young(self, origins: Origins) -> np.ndarray:
         """Which triangles are not opaque yet, [N] bool."""
@@ -222,23 +224,9 @@ def _before(before: Mesh, mesh: Mesh) -> np.ndarray:
     return earlier
 
 
-def _lines(corners: np.ndarray) -> np.ndarray:
-    """Sides of triangles as a x + b y + c, the distance to the inside [px].
-
-    Args:
-        corners: Positions of either orientation [px], [G, 3, 2].
-
-    Returns:
-        Shape [G, 3, 3].
-    """
-    sides = corners[:, [1, 2, 0]] - corners
-    normals = np.stack([-sides[:, :, 1], sides[:, :, 0]], axis=2)
-    normals /= np.linalg.norm(normals, axis=2, keepdims=True)
-    # The third corner lies inside of the side between the other two.
-    heights = ((corners[:, [2, 0, 1]] - corners) * normals).sum(axis=2)
-    normals *= np.sign(heights)[:, :, None]
-    offsets = -(normals * corners).sum(axis=2, keepdims=True)
-    return np.concatenate([normals, offsets], axis=2)
+def _mapped(maps: np.ndarray, points: np.ndarray) -> np.ndarray:
+    """Where maps [N, 2, 3] take points [N, 2] [px]."""
+    return (maps[:, :, :2] @ points[:, :, None])[:, :, 0] + maps[:, :, 2]
 
 
 def _maps(corners: np.ndarray, earlier: np.ndarray) -> np.ndarray:

@@ -1,8 +1,11 @@
 """Draw a snapshot in any stack of styles at any size."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from stages.fading import Fading
+from stages.gray import read_gray
 from stages.paint import paint_of
 from stages.snapshot import Snapshot
 from warp_kernels.canvas import Canvas
@@ -20,9 +23,11 @@ class Renderer:
         picture: Width and height of the source [px].
         output: Width and height of what is drawn [px].
         styles: Bottom to top.
+        masked: Styles over these, each inside of a mask, bottom to top.
 
     Raises:
         OptionError: If the output is too large or has no pixel.
+        MediaError: If a texture cannot be read.
     """
 
     def __init__(
@@ -31,32 +36,42 @@ class Renderer:
         picture: tuple[int, int],
         output: tuple[int, int],
         styles: tuple[Style, ...],
+        masked: tuple[Style, ...] = (),
     ) -> None:
         if not 1 <= min(output) <= max(output) <= MAX_SIDE:
             raise OptionError(
                 f"an output of {output[0]}x{output[1]}: sides must lie between 1 and {MAX_SIDE} px"
             )
-        self._canvas = Canvas(device, picture, output, styles)
+        textures = [style.texture(read_gray) for style in (*styles, *masked)]
+        self._canvas = Canvas(device, picture, output, styles, masked, textures)
 
-    def render(self, snapshot: Snapshot, fading: Fading | None = None) -> np.ndarray:
+    def render(
+        self,
+        snapshot: Snapshot,
+        fading: Fading | None = None,
+        source: np.ndarray | None = None,
+        masks: Sequence[np.ndarray] = (),
+    ) -> np.ndarray:
         """Draw a snapshot.
 
         Args:
             snapshot: What to draw.
             fading: What lingers of the frames before it, if anything; it ends with the snapshot.
+            source: The picture from which it was made [code values], [H, W, 3] uint8; needed if a
+                style does.
+            masks: For each masked style where it is drawn (255) and where not (0), [H, W] uint8.
 
         Returns:
-            Code values, [rows, columns, 3] uint8.
+            Code values, [rows, columns, 3] uint8, or [rows, columns, 4] with straight alpha if no
+            style of the stack is opaque.
         """
         mesh = snapshot.mesh
         paint, layers = (paint_of(snapshot), None) if fading is None else fading.layers()
         return self._canvas.draw(
             vertices=mesh.vertices,
             triangles=mesh.triangles,
-            edges=mesh.edge_vertices,
-            colors=paint.colors,
-            gradients=paint.gradients,
-            curvatures=paint.curvatures,
-            centres=paint.centres,
+            paint=paint,
             layers=layers,
+            source=source,
+            masks=masks,
         )

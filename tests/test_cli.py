@@ -59,7 +59,7 @@ USAGE_ERRORS = [
     ("--style edges:width", "KEY=VALUE"),
     ("--style edges:width=1,width=2", "twice"),
     ("--style edges:color=reddish", "reddish"),
-    ("--style flat:colour=red", "none"),
+    ("--style flat:colour=red", "opacity"),
     ("--style flat --style nothing", "nothing"),
     ("--size 0x10", "0x10"),
     ("--size 10x0", "10x0"),

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from pipeline.build_job import build_job
-from pipeline.declared import NO_DEFAULT, declared_fields, declared_registry
+from pipeline.declared import NO_DEFAULT, declared_fields, declared_registry, own_first
 from pipeline.job import Job
 from pipeline.member_spec import parse_member
 from pipeline.options import job_options, with_preset
@@ -79,7 +79,7 @@ def test_registries_are_read_as_python_reads_them(reference: str) -> None:
     read = declared_registry(reference)
     assert list(read) == list(REGISTRIES[reference])
     for name, cls in REGISTRIES[reference].items():
-        assert [f.name for f in read[name]] == [f.name for f in dataclasses.fields(cls)]
+        assert [f.name for f in read[name]] == [f.name for f in own_first(cls)]
 
 
 def test_declaration_that_is_not_literal_is_imported(tmp_path: Path, monkeypatch) -> None:

@@ -4,13 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.spatial import Delaunay
 
 from stages.layouts.grid import Grid
 from stages.mesh import Mesh, mesh_of
 from stages.render import Renderer
 from stages.snapshot import Snapshot
-from stages.validate import assert_valid
 from tests.kernel_samples import noise, random_mesh, snapshot_of, waves
 from warp_kernels.color_model import CONSTANT, LINEAR, QUADRATIC
 from warp_kernels.device import Device
@@ -34,14 +32,14 @@ def draw(
     size: tuple[int, int] | None = None,
     threads: int = 0,
 ) -> np.ndarray:
-    """Draw a snapshot over an output that held a sentinel, [H, W, 3] uint8."""
+    """Draw a snapshot over waves, on an output that held a sentinel, [H, W, 3 or 4] uint8."""
     picture = (snapshot.mesh.width, snapshot.mesh.height)
     renderer = Renderer(Device(device, threads), picture, size or picture, styles)
     renderer._canvas._pixels.fill_(SENTINEL)
     # Sample grids start outside all triangles but inside the memory of their colours.
     renderer._canvas._triangle_of.fill_(snapshot.mesh.triangle_count)
-    renderer._canvas._colors.fill_(SENTINEL)
-    return renderer.render(snapshot)
+    renderer._canvas._tables["colors"].fill_(SENTINEL)
+    return renderer.render(snapshot, source=waves(*picture))
 
 
 def painted(mesh: Mesh, colors: np.ndarray) -> Snapshot:
@@ -175,17 +173,16 @@ def test_edges_have_width_color_and_opacity(zoom: int, device: str) -> None:
 
 
 def test_wider_lines_cover_more_in_proportion(device: str) -> None:
-    """The covered area grows with the width, thin lines included."""
+    """The light that is held back grows with the width, thin lines included."""
     white = plain(square(60), (255, 255, 255))
     widths = (0.25, 0.5, 1.0, 2.0)
-    ink = [
-        (255.0 - draw(white, device, Flat(), Edges(width=w, color="#000"))).mean() for w in widths
-    ]
+    pictures = [draw(white, device, Flat(), Edges(width=w, color="#000")) for w in widths]
+    ink = [1.0 - ((picture / 255.0) ** 2).mean() for picture in pictures]
     # half of the border's lines lies outside the picture
     length = 60 * np.sqrt(2) + 4 * 60 / 2
-    expected = [255.0 * length * w / 3600 for w in widths]
+    expected = [length * w / 3600 for w in widths]
     # exact along the axes; on a diagonal a filter across the line is a good third off at most
-    np.testing.assert_allclose(ink, expected, rtol=0.15)
+    np.testing.assert_allclose(ink, expected, rtol=0.16)
 
 
 def test_opacity_zero_is_invisible(device: str) -> None:
@@ -194,36 +191,6 @@ def test_opacity_zero_is_invisible(device: str) -> None:
     lines = Edges(width=3, opacity=0)
     plain_picture = draw(snapshot, device, Flat())
     np.testing.assert_array_equal(draw(snapshot, device, Flat(), lines), plain_picture)
-
-
-def test_translated_mesh_gives_the_translated_picture(device: str) -> None:
-    """Whole pixels further, inner triangles look the same to the bit."""
-    inner = random_mesh(40, 30, 30, grid=256)
-    shift = np.array([5, 3])
-    meshes = [_framed(inner, np.array([20, 16]) + step) for step in (0 * shift, shift)]
-    rng = np.random.default_rng(3)
-    colors = rng.integers(0, 256, (meshes[0].triangle_count, 3))
-    mask = np.where(np.arange(len(colors))[:, None] < inner.triangle_count, 255, [[0, 0, 0]])
-    for style in (Flat(), Gradient()):
-        here, there = (draw(painted(m, colors), device, style) for m in meshes)
-        whole = draw(painted(meshes[0], mask), device, Flat())[..., 0] == 255
-        assert whole.sum() > 900
-        shifted = np.roll(there, -shift[::-1], axis=(0, 1))
-        np.testing.assert_array_equal(shifted[whole], here[whole])
-
-
-def _framed(inner: Mesh, offset: np.ndarray) -> Mesh:
-    """A mesh placed inside a picture of 96 x 64 px; its triangles come first."""
-    hull = inner.vertices + offset
-    corners = np.array([[0, 0], [96, 0], [0, 64], [96, 64]])
-    points = np.concatenate([hull, corners])
-    rim = np.flatnonzero(inner.on_left_right | inner.on_top_bottom)
-    used = np.concatenate([rim, len(hull) + np.arange(4)])
-    rows = used[Delaunay(points[used]).simplices]
-    outside = [row for row in rows if (row >= len(hull)).any()]
-    mesh = mesh_of(points, np.concatenate([inner.triangles, outside]), 96, 64)
-    assert_valid(mesh)
-    return mesh
 
 
 @pytest.mark.parametrize("size", [(0, 10), (10, 0), (MAX_SIDE + 1, 10)])
@@ -249,7 +216,7 @@ def test_growing_meshes_are_drawn(device: str) -> None:
 def stack(request: pytest.FixtureRequest) -> tuple[Style, ...]:
     """Give each registered style as people see it: lines over flat colours."""
     style = STYLES[request.param]()
-    return (Flat(), style) if style.line_width else (style,)
+    return (style,) if style.is_opaque else (Flat(), style)
 
 
 def test_contract_of_a_style(stack: tuple[Style, ...], device: str) -> None:
@@ -258,7 +225,7 @@ def test_contract_of_a_style(stack: tuple[Style, ...], device: str) -> None:
     assert style == type(style)()
     assert hash(style) == hash(type(style)())
     assert style.degree in (0, 1, 2)
-    assert len(style.parameters()) <= 8
+    assert len(style.numbers()) <= 16
     model = LINEAR if style.degree else CONSTANT
     snapshot = snapshot_of(Device(device), waves(61, 47), random_mesh(61, 47, 30), model)
     pictures = [draw(snapshot, device, *stack, size=(75, 33), threads=n) for n in (1, 2, 3)]

@@ -1,18 +1,24 @@
 """Every device array of one output, and the recorded launches that draw a mesh into it."""
 
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import warp as wp
 
+from warp_kernels.blend import Coat
 from warp_kernels.device import Device, Phase
-from warp_kernels.edge_coverage import BAND, record_edge_coverage
 from warp_kernels.gbuffer import record_gbuffer
-from warp_kernels.layers import Affine, Layers, LayerTables
+from warp_kernels.layers import Layers, LayerTables
+from warp_kernels.paint import Paint, shapes_of, to_places
+from warp_kernels.prepare import record_prepare
 from warp_kernels.raster import MAX_SIDE
-from warp_kernels.scene import Scene, StyleParameters
-from warp_kernels.shade import record_shade
+from warp_kernels.scene import FIXED, FRACTION_BITS, Numbers, Scene, StyleParameters
+from warp_kernels.shade import parts_of_a_pixel, record_shade
+from warp_kernels.source_picture import reduced, step_for
 from warp_kernels.styles import Style
+from warp_kernels.texture import Texture, pack
 
 SAMPLES = 3
 """Samples per output pixel, across and down each; fewer where the sample grid would exceed what
@@ -29,6 +35,8 @@ class Canvas:
         picture: Width and height of the picture that the meshes cover [px].
         output: Width and height of the output [px], at most MAX_SIDE each.
         styles: Bottom to top.
+        masked: Styles over these, each inside of a mask.
+        textures: What the shader of each style looks into, or None; masked ones last.
     """
 
     def __init__(
@@ -37,85 +45,103 @@ class Canvas:
         picture: tuple[int, int],
         output: tuple[int, int],
         styles: tuple[Style, ...],
+        masked: tuple[Style, ...],
+        textures: list[Texture | None],
     ) -> None:
         self.device = device
         self.picture = picture
         self.output = output
-        self.styles = styles
         self.samples = max(1, min(SAMPLES, MAX_SIDE // max(output)))
+        self._coats = coats_of(styles, masked)
+        self._masked = len(masked)
+        styles = (*styles, *masked)
+        self._prepares = {i: s.prepare for i, s in enumerate(styles) if s.prepare is not None}
         width, height = output
         columns = width * self.samples
         self._band = max(1, min(height, BAND_SAMPLES // (columns * self.samples)))
-        band = (self._band * self.samples, columns)
-        self._triangle_of = device.empty(band, int)
-        self._pixels = device.empty((height, width), wp.vec3ub)
-        self._edge_count = device.empty(1, int)
+        self._triangle_of = device.empty((self._band * self.samples, columns), int)
+        is_opaque = any(coat.is_opaque for coat in self._coats)
+        self._pixels = device.empty((height, width), wp.vec3ub if is_opaque else wp.vec4ub)
         self._curved = device.empty(1, int)
-        self._line_width = max((style.line_width for style in styles), default=0.0)
-        shape = (height, width) if self._line_width else (1, 1)
-        self._coverage = device.empty(shape, float)
-        device.clear(self._coverage)
-        packed = np.zeros((max(1, len(styles)), 8), dtype=np.float32)
-        for row, style in zip(packed, styles, strict=False):
-            row[: len(style.parameters())] = style.parameters()
-        self._parameters = device.empty(len(packed), StyleParameters)
-        device.write(self._parameters, packed)
+        self._steady = self._steady_scene(needs_source=any(s.needs_source for s in styles))
+        self._parameters = self._parameters_of(styles, textures)
         self._allocate(vertices=512, triangles=1024, layers=1024, links=1)
+
+    def _steady_scene(self, *, needs_source: bool) -> dict[str, Any]:
+        """The parts of a scene that are the same for all frames."""
+        width, height = self.picture
+        step = step_for(self.picture, self.output)
+        size = (-(-height // step), -(-width // step)) if needs_source else (1, 1)
+        return {
+            "curved": self._curved,
+            "source": self.device.empty(size, wp.vec3ub),
+            "source_step": step,
+            "masks": self.device.empty((max(1, self._masked * height), width), wp.uint8),
+            "mask_rows": height,
+            "columns": self._filled(centres(width, self.output[0]), int),
+            "rows": self._filled(centres(height, self.output[1]), int),
+            "pixel": float(np.sqrt((0.5 / np.square(self._scale)).sum())),
+            "parts": self._filled(parts_of_a_pixel(self.samples), wp.vec4f),
+            "sample_size": wp.vec2f(*(FIXED / (scale * self.samples) for scale in self._scale)),
+        }
+
+    def _parameters_of(self, styles: tuple[Style, ...], textures: list[Texture | None]) -> wp.array:
+        """What the styles were asked for; their textures become a part of the scene."""
+        texels, levels, ranges = pack(textures)
+        self._steady["texels"] = self._filled(texels, wp.uint8)
+        self._steady["levels"] = self._filled(levels, wp.vec4i)
+        packed = np.zeros(max(1, len(styles)), dtype=StyleParameters.numpy_dtype())
+        packed["row"] = np.arange(len(packed))
+        packed["mask"] = np.arange(len(packed)) - (len(styles) - self._masked)
+        for row, style, (first, count) in zip(packed, styles, ranges, strict=False):
+            numbers = style.numbers()
+            row["numbers"].reshape(-1)[: len(numbers)] = numbers
+            row["opacity"], row["first_level"], row["level_count"] = style.opacity, first, count
+        return self._filled(packed, StyleParameters)
 
     def draw(
         self,
         *,
         vertices: np.ndarray,
         triangles: np.ndarray,
-        edges: np.ndarray,
-        colors: np.ndarray,
-        gradients: np.ndarray,
-        curvatures: np.ndarray | None,
-        centres: np.ndarray,
+        paint: Paint,
         layers: Layers | None = None,
+        source: np.ndarray | None = None,
+        masks: Sequence[np.ndarray] = (),
     ) -> np.ndarray:
         """Draw a mesh.
 
         Args:
             vertices: Positions [px of the picture], [V, 2].
             triangles: Corners, [T, 3].
-            edges: Ends, [E, 2].
-            colors: Mean colours of the triangles, then of the vanished ones that show through
-                [code values], [M, 3].
-            gradients: Change of colour to the right and down [code values / px], [M, 2, 3].
-            curvatures: What quadratic colours add, see `Scene`, [M, 4, 3]; None for others.
-            centres: Centroids [px of the picture], [M, 2].
+            paint: The triangles, then the M - T vanished ones that show through.
             layers: What fading triangles let through; None where none fades, M is T then.
+            source: The picture [code values], [H, W, 3] uint8; looked at if a style needs it.
+            masks: For each masked style where it is drawn (255) and where not (0), [H, W] uint8.
 
         Returns:
-            Code values, [rows, columns, 3] uint8; a copy of its own.
+            Code values, [rows, columns, 3] uint8, or [rows, columns, 4] with straight alpha if no
+            style of the stack is opaque; a copy of its own.
         """
         self._reserve(
             vertices=len(vertices),
             triangles=len(triangles),
-            layers=len(colors),
+            layers=len(paint.colors),
             links=1 if layers is None else len(layers.links),
         )
         if layers is not None:
             self._write_layers(layers)
-        for array, values in (
-            (self._vertices, vertices),
-            (self._triangles, triangles),
-            (self._edges, edges),
-            (self._colors, colors),
-            (self._gradients, gradients),
-            (self._curved, np.array([0 if curvatures is None else 1])),
-            (self._centres, centres),
-            (self._edge_count, np.array([len(edges)])),
-        ):
-            self.device.write(array, values)
-        if curvatures is not None:
-            self.device.write(self._curvatures, curvatures)
-        phases = []
-        if self._line_width:
-            self.device.clear(self._coverage)
-            self._edge_drawing.resize(-(-self.output[1] // BAND), per_element=len(edges))
-            phases.append(self._edge_drawing)
+        self.device.write(self._vertices, vertices)
+        self.device.write(self._triangles, triangles)
+        is_even = all(coat.is_even for coat in self._coats)
+        self._write_paint(paint, shapes=not is_even or layers is not None)
+        if source is not None and self._steady["source"].size > 1:
+            self.device.write(self._steady["source"], reduced(source, self._steady["source_step"]))
+        if masks:
+            self.device.write(self._steady["masks"], np.concatenate(masks))
+        for preparing in self._preparing:
+            preparing.resize(len(paint.colors))
+        phases = list(self._preparing)
         for top, filling, shading in self._bands(fades=layers is not None):
             filling.resize(len(triangles))
             shading.resize(min(self._band, self.output[1] - top))
@@ -123,10 +149,25 @@ class Canvas:
         self.device.run(phases)
         return self.device.read(self._pixels, self.output[1])
 
+    def _write_paint(self, paint: Paint, *, shapes: bool) -> None:
+        """Hand over colours, and shapes if they are looked at."""
+        write, tables = self.device.write, self._tables
+        write(tables["colors"], paint.colors)
+        write(self._curved, np.array([0 if paint.curvatures is None else 1]))
+        if paint.curvatures is not None:
+            write(tables["curvatures"], paint.curvatures)
+        if shapes:
+            found = shapes_of(paint.corners)
+            for name in ("anchors", "sides", "incircles", "lines"):
+                write(tables[name], getattr(found, name))
+            write(tables["gradients"], paint.gradients)
+            write(tables["hashes"], paint.hashes)
+
     def _write_layers(self, layers: Layers) -> None:
         """Hand over what shows through."""
-        for name in ("weights", "maps", "spans", "links", "lines"):
+        for name in ("weights", "turns", "spans", "links"):
             self.device.write(getattr(self._layers, name), getattr(layers, name))
+        self.device.write(self._layers.departures, to_places(layers.departures))
 
     def _reserve(self, **counts: int) -> None:
         """Make room for so many of each kind, and some more."""
@@ -146,28 +187,43 @@ class Canvas:
         }
         self._vertices = self._empty(vertices, wp.vec2d)
         self._triangles = self._empty(triangles, wp.vec3i)
-        self._edges = self._empty(vertices + triangles + 1, wp.vec2i)
-        self._colors = self._empty(layers, wp.vec3f)
-        self._gradients = self._empty((layers, 2), wp.vec3f)
-        self._curvatures = self._empty((layers, 4), wp.vec3f)
-        self._centres = self._empty(layers, wp.vec2f)
+        self._tables = {
+            "colors": self._empty(layers, wp.vec3f),
+            "gradients": self._empty((layers, 2), wp.vec3f),
+            "curvatures": self._empty((layers, 4), wp.vec3f),
+            "anchors": self._empty(layers, wp.vec2i),
+            "sides": self._empty((layers, 2), wp.vec2f),
+            "incircles": self._empty(layers, wp.vec3f),
+            "lines": self._empty(layers, wp.mat33f),
+            "hashes": self._empty(layers, wp.uint32),
+            "prepared": self._empty((len(self._parameters), layers), Numbers),
+        }
         tables = LayerTables()
         tables.weights = self._empty(layers, float)
-        tables.maps = self._empty(layers, Affine)
+        tables.turns = self._empty(layers, wp.mat22f)
+        tables.departures = self._empty(layers, wp.vec2i)
         tables.spans = self._empty(layers, wp.vec2i)
         tables.links = self._empty(links, int)
-        tables.lines = self._empty(layers, wp.mat33f)
         self._layers = tables
         self._recorded: dict[bool, list[tuple[int, Phase, Phase]]] = {}
-        self._edge_drawing = record_edge_coverage(
-            self.device,
-            vertices=self._vertices,
-            edges=self._edges,
-            edge_count=self._edge_count,
-            scale=self._scale,
-            half_width=0.5 * self._line_width * self._scale[1],
-            coverage_out=self._coverage,
-        )
+        self._preparing = [
+            record_prepare(
+                self.device,
+                prepare=prepare,
+                style=style,
+                scene=self._scene(),
+                parameters=self._parameters,
+                prepared_out=self._tables["prepared"],
+            )
+            for style, prepare in self._prepares.items()
+        ]
+
+    def _scene(self) -> Any:
+        """Everything that shaders look at."""
+        scene = Scene()
+        for name, value in {**self._steady, **self._tables}.items():
+            setattr(scene, name, value)
+        return scene
 
     @property
     def _scale(self) -> tuple[float, float]:
@@ -189,13 +245,6 @@ class Canvas:
     def _record_band(self, top: int, *, fades: bool) -> tuple[Phase, Phase]:
         """Record what fills and what shades the band that begins with output row `top`."""
         scale = self._scale
-        scene = Scene()
-        scene.colors = self._colors
-        scene.gradients = self._gradients
-        scene.curvatures = self._curvatures
-        scene.curved = self._curved
-        scene.centres = self._centres
-        scene.edge_coverage = self._coverage
         filling = record_gbuffer(
             self.device,
             vertices=self._vertices,
@@ -206,14 +255,13 @@ class Canvas:
         )
         shading = record_shade(
             self.device,
-            shaders=tuple(style.shader for style in self.styles),
+            coats=self._coats,
             samples=self.samples,
-            scene=scene,
+            scene=self._scene(),
             parameters=self._parameters,
             layers=self._layers,
             fades=fades,
             triangle_of=self._triangle_of,
-            picture_per_sample=(1 / (scale[0] * self.samples), 1 / (scale[1] * self.samples)),
             top=top,
             canvas_out=self._pixels,
         )
@@ -221,3 +269,36 @@ class Canvas:
 
     def _empty(self, shape: Any, dtype: Any) -> wp.array:
         return self.device.empty(shape, dtype)
+
+    def _filled(self, values: np.ndarray, dtype: Any) -> wp.array:
+        """A device array of given values."""
+        array = self.device.empty(len(values), dtype)
+        self.device.write(array, values)
+        return array
+
+
+def coats_of(styles: tuple[Style, ...], masked: tuple[Style, ...]) -> tuple[Coat, ...]:
+    """What a kernel depends on; over an opaque style it does not matter whether one is opaque.
+
+    Args:
+        styles: Bottom to top.
+        masked: Those over them that are drawn inside of masks.
+    """
+    coats = [Coat(s.shader, s.blend, s.is_opaque, s.covers, s.is_even) for s in styles]
+    for number in range(1, len(coats)):
+        if any(coat.is_opaque for coat in coats[:number]):
+            coats[number] = replace(coats[number], is_opaque=False)
+    return *coats, *(Coat(s.shader, s.blend, False, s.covers, False, True) for s in masked)
+
+
+def centres(side: int, count: int) -> np.ndarray:
+    """Places of the centres of equal parts of a side of the picture [2^-16 px], [count].
+
+    Whole numbers throughout: parts that are a whole number of pixels apart are exactly so.
+
+    Args:
+        side: Length of the side [px].
+        count: Number of parts.
+    """
+    halves = (2 * np.arange(count, dtype=np.int64) + 1) * side
+    return (halves << (FRACTION_BITS - 1)) // count

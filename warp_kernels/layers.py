@@ -3,7 +3,8 @@
 A layer is a triangle of the frame, or one that vanished a few frames ago. Layers are numbered
 like triangles in everything that styles look at: first the frame's own, then the vanished ones,
 each in the coordinates of the last frame that had it. Through a layer that is not opaque the
-layers of the frame before its birth are seen, at the place that its material had there.
+layers of the frame before its birth are seen, at the place that its material had there. As in a
+`Scene` everything is seen from corner 0 of a layer, its anchor.
 """
 
 from dataclasses import dataclass
@@ -13,14 +14,9 @@ from typing import Any
 import numpy as np
 import warp as wp
 
-from warp_kernels.scene import Sample, Scene, StyleParameters
+from warp_kernels.scene import FAR, FIXED, Sample, Scene, StyleParameters, depth_inside, offset_of
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
-
-FAR = wp.constant(1.0e30)
-"""Farther from every border than any pixel [px]."""
-Affine = wp.types.matrix(shape=(2, 3), dtype=wp.float32)
-"""A map of the plane: its linear part, then where the origin goes."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,15 +25,14 @@ class Layers:
 
     weights: np.ndarray
     """Opacity of every layer, 1 for all that do not fade, [M] float32."""
-    maps: np.ndarray
-    """From a fading layer's frame to the frame before its birth [px], [M, 2, 3] float32."""
+    turns: np.ndarray
+    """What offsets in a fading layer were in the frame before its birth, [M, 2, 2] float32."""
+    departures: np.ndarray
+    """Where its anchor lay in that frame [px], [M, 2] float64."""
     spans: np.ndarray
     """Begin and end of what lies beneath in `links`, not empty if a layer fades, [M, 2] int32."""
     links: np.ndarray
     """Numbers of layers, [L] int32."""
-    lines: np.ndarray
-    """For the sides of a vanished layer (a, b, c): a x + b y + c is the distance from the side
-    to the inside [px], [M, 3, 3] float32."""
 
 
 @wp.struct
@@ -45,17 +40,49 @@ class LayerTables:
     """The same on the device."""
 
     weights: wp.array(dtype=float)
-    maps: wp.array(dtype=Affine)
+    turns: wp.array(dtype=wp.mat22f)
+    departures: wp.array(dtype=wp.vec2i)
     spans: wp.array(dtype=wp.vec2i)
     links: wp.array(dtype=int)
-    lines: wp.array(dtype=wp.mat33f)
+
+
+@wp.struct
+class Seen:
+    """What is seen at a point."""
+
+    color: wp.vec3f
+    """Colour times opacity [code values]."""
+    opacity: float
+    """How much the styles hide of what is behind them all, 0 to 1."""
+    clear: float
+    """Distance from the nearest border beneath [px]."""
+    calm: float
+    """How far to the right of the point the same is seen, see `Ink` [px]."""
 
 
 @wp.func
-def depth_inside(lines: wp.mat33f, point: wp.vec3f) -> float:
-    """Distance to the nearest side of a layer [px], negative outside."""
-    distances = lines * point
-    return wp.min(wp.min(distances[0], distances[1]), distances[2])
+def departed(layers: LayerTables, sample: Sample) -> wp.vec2i:
+    """Where a fading layer's material lay in the frame before its birth [2^-16 px]."""
+    moved = FIXED * (layers.turns[sample.triangle] * sample.offset)
+    at = layers.departures[sample.triangle]
+    return wp.vec2i(at[0] + int(wp.rint(moved[0])), at[1] + int(wp.rint(moved[1])))
+
+
+@wp.func
+def layer_beneath(scene: Scene, layers: LayerTables, above: int, place: wp.vec2i) -> int:
+    """The layer that holds a place under a fading one; beyond the outline of all the nearest."""
+    span = layers.spans[above]
+    found = layers.links[span[0]]
+    deepest = depth_inside(scene.lines[found], offset_of(place, scene.anchors[found]))
+    number = span[0] + 1
+    while number < span[1] and deepest <= 0.0:
+        other = layers.links[number]
+        depth = depth_inside(scene.lines[other], offset_of(place, scene.anchors[other]))
+        if depth > deepest:
+            deepest = depth
+            found = other
+        number += 1
+    return found
 
 
 @cache
@@ -63,7 +90,7 @@ def opaque_look(color_at: Any) -> Any:
     """A wp.func that sees the frame's own triangles alone.
 
     Args:
-        color_at: A wp.func `(Scene, parameters, Sample) -> vec3f`.
+        color_at: A wp.func `(Scene, parameters, Sample) -> Coated`.
     """
 
     @wp.func
@@ -72,10 +99,16 @@ def opaque_look(color_at: Any) -> Any:
         parameters: wp.array(dtype=StyleParameters),
         layers: LayerTables,
         sample: Sample,
-    ) -> wp.vec4f:
+    ) -> Seen:
         """Colour, and a distance from every border beneath: there is none."""
-        color = color_at(scene, parameters, sample)
-        return wp.vec4f(color[0], color[1], color[2], FAR)
+        coated = color_at(scene, parameters, sample)
+        color = coated.color
+        seen = Seen()
+        seen.color = color[3] * wp.vec3f(color[0], color[1], color[2])
+        seen.opacity = color[3]
+        seen.clear = FAR
+        seen.calm = coated.calm
+        return seen
 
     return look
 
@@ -85,7 +118,7 @@ def fading_look(color_at: Any) -> Any:
     """A wp.func that sees through the triangles that are not opaque yet.
 
     Args:
-        color_at: A wp.func `(Scene, parameters, Sample) -> vec3f`.
+        color_at: A wp.func `(Scene, parameters, Sample) -> Coated`.
     """
 
     @wp.func
@@ -94,40 +127,32 @@ def fading_look(color_at: Any) -> Any:
         parameters: wp.array(dtype=StyleParameters),
         layers: LayerTables,
         sample: Sample,
-    ) -> wp.vec4f:
+    ) -> Seen:
         """Colour, and the distance from the nearest border beneath [px]."""
-        color = color_at(scene, parameters, sample)
-        weight = layers.weights[sample.triangle]
-        if weight == 1.0:
-            return wp.vec4f(color[0], color[1], color[2], FAR)
-        color = weight * color
-        seen = 1.0 - weight
-        clear = float(FAR)
+        seen = Seen()
+        seen.clear = FAR
         here = Sample()
         here.triangle = sample.triangle
-        here.position = sample.position
+        here.offset = sample.offset
+        here.place = sample.place
+        here.extent = sample.extent
         here.row = sample.row
         here.column = sample.column
-        while weight < 1.0:
-            here.position = layers.maps[here.triangle] * wp.vec3f(
-                here.position[0], here.position[1], 1.0
-            )
-            point = wp.vec3f(here.position[0], here.position[1], 1.0)
-            span = layers.spans[here.triangle]
-            # The one that holds the point; beyond the outline of all of them the nearest.
-            here.triangle = layers.links[span[0]]
-            deepest = depth_inside(layers.lines[here.triangle], point)
-            place = span[0] + 1
-            while place < span[1] and deepest <= 0.0:
-                depth = depth_inside(layers.lines[layers.links[place]], point)
-                if depth > deepest:
-                    deepest = depth
-                    here.triangle = layers.links[place]
-                place += 1
-            clear = wp.min(clear, deepest)
+        rest = float(1.0)
+        while rest > 0.0:
+            coated = color_at(scene, parameters, here)
+            color = coated.color
             weight = layers.weights[here.triangle]
-            color += seen * weight * color_at(scene, parameters, here)
-            seen *= 1.0 - weight
-        return wp.vec4f(color[0], color[1], color[2], clear)
+            seen.calm = wp.where(rest * weight < 1.0, 0.0, coated.calm)
+            seen.color += rest * weight * color[3] * wp.vec3f(color[0], color[1], color[2])
+            seen.opacity += rest * weight * color[3]
+            rest *= 1.0 - weight
+            if weight < 1.0:
+                place = departed(layers, here)
+                here.triangle = layer_beneath(scene, layers, here.triangle, place)
+                here.offset = offset_of(place, scene.anchors[here.triangle])
+                depth = depth_inside(scene.lines[here.triangle], here.offset)
+                seen.clear = wp.min(seen.clear, depth)
+        return seen
 
     return look

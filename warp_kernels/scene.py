@@ -1,9 +1,39 @@
-"""What a style's shader may look at."""
+"""What a style's shader may look at, and what it gives back.
+
+Places in the picture are whole numbers of 2^-16 px, and a shader sees them from a corner of its
+triangle: a triangle that is whole pixels further on is drawn the same, to the last bit.
+"""
 
 import warp as wp
 
-StyleParameters = wp.types.vector(length=8, dtype=wp.float32)
+FRACTION_BITS = 16
+"""Places count in 2^-16 px: an eighth-thousandth of what is seen, and 8192 px fit into 32 bits."""
+FIXED = wp.constant(float(1 << FRACTION_BITS))
+"""Units of a place per px."""
+
+FAR = wp.constant(1.0e30)
+"""Farther than any picture is wide [px]."""
+
+Numbers = wp.types.vector(length=16, dtype=wp.float32)
 """A style's numbers, in the order that the style itself fixes; the rest is zero."""
+
+
+@wp.struct
+class StyleParameters:
+    """What a style was asked for."""
+
+    numbers: Numbers
+    """Its own parameters."""
+    opacity: float
+    """How much it hides what lies below, 0 to 1; the stack applies it, not the shader."""
+    first_level: int
+    """Number of its texture's finest level in `Scene.levels`."""
+    level_count: int
+    """Levels of its texture, 0 if it has none."""
+    row: int
+    """Its row of `Scene.prepared`."""
+    mask: int
+    """Number of its mask, if it has one."""
 
 
 @wp.struct
@@ -19,10 +49,41 @@ class Scene:
     values], then the coefficients of x^2, x y and y^2 from there [code values / px^2], [T, 4]."""
     curved: wp.array(dtype=int)
     """1 where colours are quadratic, 0 where `curvatures` are not to be read, [1]."""
-    centres: wp.array(dtype=wp.vec2f)
-    """Centroid of every triangle, where a linear colour has its mean [px of the picture], [T]."""
-    edge_coverage: wp.array2d(dtype=float)
-    """Part of every output pixel covered by drawn edges, [rows, columns]; may be empty."""
+    anchors: wp.array(dtype=wp.vec2i)
+    """Place of every triangle's corner 0, which starts its base edge [2^-16 px], [T]."""
+    sides: wp.array2d(dtype=wp.vec2f)
+    """Corners 1 and 2 from corner 0 [px of the picture]; the first is the base edge, [T, 2]."""
+    incircles: wp.array(dtype=wp.vec3f)
+    """Incentre from corner 0 and the inradius [px of the picture], [T]."""
+    lines: wp.array(dtype=wp.mat33f)
+    """Rows (a, b, c) for the sides from corners 0, 1 and 2 on: a x + b y + c is the distance from
+    the side to the inside, (x, y) seen from corner 0 [px of the picture], [T]."""
+    hashes: wp.array(dtype=wp.uint32)
+    """A number without order for every triangle that stays with it from frame to frame, [T]."""
+    prepared: wp.array2d(dtype=Numbers)
+    """What styles worked out about every triangle beforehand, [styles, T]."""
+    source: wp.array2d(dtype=wp.vec3ub)
+    """The source picture, smaller by the factor `source_step`; empty unless a style needs it."""
+    source_step: int
+    """Pixels of the picture, across and down, that are one of `source`."""
+    masks: wp.array2d(dtype=wp.uint8)
+    """Where masked styles are drawn, 255 for fully; masks of the picture, one below the other."""
+    mask_rows: int
+    """Rows of a mask."""
+    texels: wp.array(dtype=wp.uint8)
+    """The textures of all styles; see `texture`."""
+    levels: wp.array(dtype=wp.vec4i)
+    """Begin in `texels`, images, rows and columns of every level of every texture, [L]."""
+    columns: wp.array(dtype=int)
+    """Place of the centre of every output column [2^-16 px], [columns]."""
+    rows: wp.array(dtype=int)
+    """The same of every output row, [rows]."""
+    pixel: float
+    """Size of an output pixel [px of the picture]."""
+    parts: wp.array(dtype=wp.vec4f)
+    """Every set of samples of a pixel, see `shade.parts_of_a_pixel`."""
+    sample_size: wp.vec2f
+    """Width and height of the parts of an output pixel that are told apart [2^-16 px]."""
 
 
 @wp.struct
@@ -31,9 +92,58 @@ class Sample:
 
     triangle: int
     """Number of the triangle under it."""
-    position: wp.vec2f
-    """Position in the source picture [px]."""
+    offset: wp.vec2f
+    """Position, from corner 0 of the triangle [px of the picture]."""
+    place: wp.vec2i
+    """The same from the picture's upper left [2^-16 px]; to look into `source`, nothing else."""
+    extent: float
+    """Side of the square that the point stands for, an output pixel or a part of one: a shader
+    smooths over it and leaves finer detail out [px of the picture]."""
     row: int
     """Row of the output pixel."""
     column: int
     """Column of the output pixel."""
+
+
+@wp.struct
+class Ink:
+    """What a shader gives back."""
+
+    color: wp.vec3f
+    """Colour [code values]."""
+    opacity: float
+    """How much the ink hides, 0 to 1; mixes code values, as painting programs do."""
+    coverage: float
+    """Part of the point that is inked at all, 0 to 1; mixes light, as the eye does."""
+    calm: float
+    """How far its triangle goes on to the right of the point and is inked alike [px], so that the
+    next points need not be asked for; `FAR` if all of it is inked alike, 0 if it is not known."""
+
+
+@wp.func
+def depths(lines: wp.mat33f, offset: wp.vec2f) -> wp.vec3f:
+    """Distances from the sides of a triangle to the inside, negative outside [px]."""
+    return lines * wp.vec3f(offset[0], offset[1], 1.0)
+
+
+@wp.func
+def depth_inside(lines: wp.mat33f, offset: wp.vec2f) -> float:
+    """Distance from the nearest side of a triangle to the inside, negative outside [px]."""
+    return wp.min(depths(lines, offset))
+
+
+@wp.func
+def full_ink(color: wp.vec3f) -> Ink:
+    """Ink that hides what lies below."""
+    ink = Ink()
+    ink.color = color
+    ink.opacity = 1.0
+    ink.coverage = 1.0
+    return ink
+
+
+@wp.func
+def offset_of(place: wp.vec2i, anchor: wp.vec2i) -> wp.vec2f:
+    """A place seen from another one [px]; the difference is exact before it is rounded."""
+    away = place - anchor
+    return wp.vec2f(float(away[0]), float(away[1])) / FIXED

@@ -1,36 +1,36 @@
 """Looks of the finished triangles: `STYLES` names them for the command line.
 
-A style is a frozen dataclass of parameters with a `shader` (a wp.func), the `parameters` that it
-hands to it, and the degree of the colour that it draws; a new one is a file and a line here.
+A style is a file with a frozen dataclass of parameters, see `Style`, and a wp.func that draws; a
+new one is a file and a line here.
 """
 
-from typing import Any, ClassVar, Protocol
-
+from warp_kernels.styles.circles import Circles
+from warp_kernels.styles.crosshatching import Crosshatching
 from warp_kernels.styles.edges import Edges
 from warp_kernels.styles.flat import Flat
 from warp_kernels.styles.gradient import Gradient
+from warp_kernels.styles.hatching import Hatching
+from warp_kernels.styles.incircles import Incircles
+from warp_kernels.styles.lenses import Lenses
+from warp_kernels.styles.paper import Paper
+from warp_kernels.styles.shrink import Shrink
+from warp_kernels.styles.source import Source
+from warp_kernels.styles.style import Style
+from warp_kernels.styles.texture import Texture
 
-
-class Style(Protocol):
-    """What every member of `STYLES` can do."""
-
-    degree: ClassVar[int]
-    """Least degree of the colour polynomial that the shader needs."""
-    shader: ClassVar[Any]
-    """A wp.func `(Scene, StyleParameters, Sample) -> vec4f`: colour [code values], opacity."""
-
-    @property
-    def line_width(self) -> float:
-        """Width of the edges that must be drawn beforehand [px of the picture], 0 for none."""
-        ...
-
-    def parameters(self) -> tuple[float, ...]:
-        """At most eight numbers for the shader."""
-        ...
-
+__all__ = ["STYLES", "Edges", "Flat", "Gradient", "Style"]
 
 STYLES: dict[str, type[Style]] = {
+    "circles": Circles,
+    "crosshatching": Crosshatching,
     "edges": Edges,
     "flat": Flat,
     "gradient": Gradient,
+    "hatching": Hatching,
+    "incircles": Incircles,
+    "lenses": Lenses,
+    "paper": Paper,
+    "shrink": Shrink,
+    "source": Source,
+    "texture": Texture,
 }

@@ -5,31 +5,55 @@ from typing import Any, ClassVar
 
 import warp as wp
 
-from warp_kernels.scene import Sample, Scene, StyleParameters
+from warp_kernels.scene import Ink, Numbers, Sample, Scene, StyleParameters, full_ink
+from warp_kernels.styles.style import Style
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 
 
 @wp.func
-def gradient_color(scene: Scene, parameters: StyleParameters, sample: Sample) -> wp.vec4f:
+def prepare_gradient(scene: Scene, parameters: StyleParameters, triangle: int) -> Numbers:
+    """Linear colour from corner 0, the centroid, and whether the colour is curved."""
+    centre = (scene.sides[triangle, 0] + scene.sides[triangle, 1]) / 3.0
+    right = scene.gradients[triangle, 0]
+    down = scene.gradients[triangle, 1]
+    start = scene.colors[triangle] - centre[0] * right - centre[1] * down
+    result = Numbers()
+    for c in range(3):
+        result[c] = start[c]
+        result[3 + c] = right[c]
+        result[6 + c] = down[c]
+    result[9] = centre[0]
+    result[10] = centre[1]
+    result[11] = float(scene.curved[0])
+    return result
+
+
+@wp.func
+def gradient_color(
+    scene: Scene, parameters: StyleParameters, sample: Sample, below: wp.vec4f
+) -> Ink:
     """The best linear or quadratic colour at the sample, within the range of code values."""
     t = sample.triangle
-    away = sample.position - scene.centres[t]
-    color = scene.colors[t] + away[0] * scene.gradients[t, 0] + away[1] * scene.gradients[t, 1]
-    if scene.curved[0] != 0:
+    n = scene.prepared[parameters.row, t]
+    at = sample.offset
+    color = wp.vec3f(
+        n[0] + at[0] * n[3] + at[1] * n[6],
+        n[1] + at[0] * n[4] + at[1] * n[7],
+        n[2] + at[0] * n[5] + at[1] * n[8],
+    )
+    if n[11] != 0.0:
+        away = at - wp.vec2f(n[9], n[10])
         bent = away[0] * scene.curvatures[t, 1] + away[1] * scene.curvatures[t, 2]
         color += scene.curvatures[t, 0] + away[0] * bent
         color += away[1] * away[1] * scene.curvatures[t, 3]
-    return wp.vec4f(
-        wp.clamp(color[0], 0.0, 255.0),
-        wp.clamp(color[1], 0.0, 255.0),
-        wp.clamp(color[2], 0.0, 255.0),
-        1.0,
-    )
+    red = wp.clamp(color[0], 0.0, 255.0)
+    green = wp.clamp(color[1], 0.0, 255.0)
+    return full_ink(wp.vec3f(red, green, wp.clamp(color[2], 0.0, 255.0)))
 
 
 @dataclass(frozen=True)
-class Gradient:
+class Gradient(Style):
     """Linear colour gradients, and quadratic ones where such colours were optimised.
 
     Source: Lawonn & Guenther, Stylized Image Triangulation (2018), Sec. 5, Fig. 6c.
@@ -38,12 +62,4 @@ class Gradient:
 
     degree: ClassVar[int] = 1
     shader: ClassVar[Any] = gradient_color
-
-    @property
-    def line_width(self) -> float:
-        """No edges are drawn."""
-        return 0.0
-
-    def parameters(self) -> tuple[float, ...]:
-        """None."""
-        return ()
+    prepare: ClassVar[Any] = prepare_gradient

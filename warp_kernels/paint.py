@@ -1,0 +1,113 @@
+"""The triangles of a frame as styles look at them, on the host."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from warp_kernels.scene import FRACTION_BITS
+
+
+@dataclass(frozen=True, eq=False)
+class Paint:
+    """Shapes and colour polynomials of some triangles."""
+
+    colors: np.ndarray
+    """Mean colours, within 0..255 [code values], [N, 3]."""
+    gradients: np.ndarray
+    """Change of colour to the right and down, at the centroid [code values / px], [N, 2, 3]."""
+    curvatures: np.ndarray | None
+    """What quadratic colours add, see `Scene`, [N, 4, 3]; None for others."""
+    corners: np.ndarray
+    """Positions of the corners, corner 0 first [px of the picture], [N, 3, 2]."""
+    ids: np.ndarray
+    """Persistent numbers of the triangles, [N] int64."""
+
+    def of(self, triangles: np.ndarray) -> "Paint":
+        """Some of the triangles, by their numbers [M]."""
+        return Paint(
+            self.colors[triangles],
+            self.gradients[triangles],
+            None if self.curvatures is None else self.curvatures[triangles],
+            self.corners[triangles],
+            self.ids[triangles],
+        )
+
+    @property
+    def hashes(self) -> np.ndarray:
+        """A number without order for every id, the same on every machine, [N] uint32.
+
+        Source: Steele, Lea & Flood, Fast Splittable Pseudorandom Number Generators (2014): the
+        finalizer of SplitMix64.
+        """
+        z = self.ids.astype(np.uint64) + np.uint64(0x9E3779B97F4A7C15)
+        z = (z ^ (z >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
+        z = (z ^ (z >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
+        return ((z ^ (z >> np.uint64(31))) >> np.uint64(32)).astype(np.uint32)
+
+
+def joined_paint(parts: list[Paint]) -> Paint:
+    """Triangles of one colour model, one after the other."""
+    curvatures = [part.curvatures for part in parts if part.curvatures is not None]
+    return Paint(
+        np.concatenate([part.colors for part in parts]),
+        np.concatenate([part.gradients for part in parts]),
+        np.concatenate(curvatures) if curvatures else None,
+        np.concatenate([part.corners for part in parts]),
+        np.concatenate([part.ids for part in parts]),
+    )
+
+
+def to_places(positions: np.ndarray) -> np.ndarray:
+    """Positions [px] as places [2^-16 px], int64 of the same shape."""
+    return np.rint(positions * float(1 << FRACTION_BITS)).astype(np.int64)
+
+
+@dataclass(frozen=True, eq=False)
+class Shapes:
+    """Where triangles lie and how they are shaped, apart from each other."""
+
+    anchors: np.ndarray
+    """Places of the corners 0 [2^-16 px], [N, 2]."""
+    sides: np.ndarray
+    """Corners 1 and 2 from corner 0 [px], [N, 2, 2]."""
+    incircles: np.ndarray
+    """Incentre from corner 0 and the inradius [px], [N, 3]."""
+    lines: np.ndarray
+    """Their sides, as `Scene` has them, [N, 3, 3]."""
+
+
+def shapes_of(corners: np.ndarray) -> Shapes:
+    """Take places and shapes apart; shapes do not change with a move by whole pixels.
+
+    Args:
+        corners: Positions [px], [N, 3, 2].
+    """
+    places = to_places(corners)
+    sides = (places[:, 1:] - places[:, :1]) / float(1 << FRACTION_BITS)
+    first, second = sides[:, 0], sides[:, 1]
+    # the side across from a corner is its weight: sum(weight * corner) / sum(weight)
+    across = np.linalg.norm(np.stack([second - first, second, first]), axis=2)
+    perimeter = np.maximum(across.sum(axis=0), 1e-12)
+    centres = (across[1, :, None] * first + across[2, :, None] * second) / perimeter[:, None]
+    twice_area = np.abs(first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0])
+    radii = twice_area / perimeter
+    incircles = np.concatenate([centres, radii[:, None]], axis=1)
+    return Shapes(places[:, 0], sides, incircles, _lines(first, second))
+
+
+def _lines(first: np.ndarray, second: np.ndarray) -> np.ndarray:
+    """Sides of triangles of either orientation, [N, 3, 3].
+
+    Args:
+        first: Corners 1 from corner 0 [px], [N, 2].
+        second: Corners 2 from there [px], [N, 2].
+    """
+    corners = np.stack([np.zeros_like(first), first, second], axis=1)
+    sides = corners[:, [1, 2, 0]] - corners
+    normals = np.stack([-sides[:, :, 1], sides[:, :, 0]], axis=2)
+    normals /= np.maximum(np.linalg.norm(normals, axis=2, keepdims=True), 1e-12)
+    # the third corner lies inside of the side between the other two
+    heights = ((corners[:, [2, 0, 1]] - corners) * normals).sum(axis=2)
+    normals *= np.where(heights < 0, -1.0, 1.0)[:, :, None]
+    offsets = -(normals * corners).sum(axis=2, keepdims=True)
+    return np.concatenate([normals, offsets], axis=2)

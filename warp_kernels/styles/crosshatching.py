@@ -1,0 +1,17 @@
+"""Strokes that cross."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from warp_kernels.styles.drawn import Drawn
+from warp_kernels.tones.tonal_art_map import Drawing, crossing_strokes
+
+
+@dataclass(frozen=True)
+class Crosshatching(Drawn):
+    """Lines along the base edge of each triangle, crossed by others the darker it is.
+
+    Source: Lawonn & Guenther, Stylized Image Triangulation (2018), Sec. 5, Fig. 6e.
+    """
+
+    drawing: ClassVar[Drawing] = staticmethod(crossing_strokes)

@@ -1,0 +1,118 @@
+"""Triangles that are drawn with strokes along their base edges: what all such styles share."""
+
+from dataclasses import dataclass, field
+from functools import cache
+from math import cos, radians, sin
+from typing import Any, ClassVar
+
+from warp_kernels.errors import OptionError
+from warp_kernels.styles.color import parse_color
+from warp_kernels.styles.style import ReadPicture, Style
+from warp_kernels.texture import Texture
+from warp_kernels.tones.lookup import packed_tones
+from warp_kernels.tones.strokes import prepare_strokes, strokes_alone, strokes_on_paper
+from warp_kernels.tones.tonal_art_map import SPACING, Drawing, tonal_art_map
+
+NO_PAPER = "none"
+"""Written instead of a colour where what lies below is the paper."""
+
+
+@dataclass(frozen=True)
+class Drawn(Style):
+    """Strokes of a pen or a pencil, denser where the picture is darker.
+
+    Without paper they darken what lies below: over `flat` that is the paper's Fig. 1, left.
+    They lie in the plane of the picture, so all of them have one width, and they are fixed to the
+    centre and the base edge of their triangle: they move with it and in no other way.
+
+    Source: Lawonn & Guenther, Stylized Image Triangulation (2018), Sec. 5; Praun et al., Real-time
+        hatching (2001), Sec. 5: blending between tones.
+    Deviation: distances from the base edge are those in the picture, where the paper scales
+        barycentric coordinates by its length: strokes of flat triangles keep their width too.
+    """
+
+    spacing: float = field(
+        default=4.0,
+        metadata={
+            "help": "distance of neighbouring lines",
+            "unit": "px of the source",
+            "range": (1.0, 100.0),
+        },
+    )
+    weight: float = field(
+        default=0.26,
+        metadata={
+            "help": "width of the thinnest lines",
+            "unit": "of the spacing",
+            "range": (0.05, 0.6),
+        },
+    )
+    angle: float = field(
+        default=0.0,
+        metadata={
+            "help": "turn of the lines from the base edge",
+            "unit": "degrees",
+            "range": (-180.0, 180.0),
+        },
+    )
+    ink: str = field(default="#24242c", metadata={"help": "#rgb or #rrggbb", "form": "color"})
+    paper: str = field(
+        default="#f8f4ea",
+        metadata={"help": "#rgb or #rrggbb, or none: strokes alone, on what lies below"},
+    )
+    colored: float = field(
+        default=0.0,
+        metadata={
+            "help": "ink (0) or pencils in the colours of the triangles (1)",
+            "range": (0, 1),
+        },
+    )
+    lighten: float = field(
+        default=0.5,
+        metadata={"help": "how much lighter than the picture ink is laid", "range": (0.0, 1.0)},
+    )
+    grain: float = field(
+        default=0.0,
+        metadata={"help": "roughness of the paper: pen (0) to soft pencil (1)", "range": (0, 1)},
+    )
+    seed: int = field(
+        default=0, metadata={"help": "chooses one of many drawings", "range": (0, 65535)}
+    )
+
+    prepare: ClassVar[Any] = prepare_strokes
+    drawing: ClassVar[Drawing]
+    """The strokes."""
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        try:
+            parse_color(self.paper if self.paper != NO_PAPER else "#fff")
+        except OptionError as error:
+            raise OptionError(f"{error}, or {NO_PAPER}") from error
+
+    @property
+    def shader(self) -> Any:
+        """One of two, by whether there is paper."""
+        return strokes_alone if self.paper == NO_PAPER else strokes_on_paper
+
+    @property
+    def covers(self) -> bool:
+        """Whether there is paper."""
+        return self.paper != NO_PAPER
+
+    def numbers(self) -> tuple[float, ...]:
+        """In the order of `tones.strokes`."""
+        sheet = "#fff" if self.paper == NO_PAPER else self.paper
+        light = (value**2 for color in (self.ink, sheet) for value in parse_color(color))
+        turn = radians(self.angle)
+        rest = (SPACING / self.spacing, cos(turn), sin(turn), self.lighten, self.colored, self.seed)
+        return (*light, *rest)
+
+    def texture(self, read: ReadPicture) -> Texture:
+        """The tonal art map."""
+        return _texture_of(type(self).drawing, self.weight, self.grain, self.seed)
+
+
+@cache
+def _texture_of(drawing: Drawing, weight: float, grain: float, seed: int) -> Texture:
+    return packed_tones(tonal_art_map(drawing, width=weight, grain=grain, seed=seed))

@@ -1,0 +1,19 @@
+"""Parallel strokes."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from warp_kernels.styles.drawn import Drawn
+from warp_kernels.tones.tonal_art_map import Drawing, parallel_strokes
+
+
+@dataclass(frozen=True)
+class Hatching(Drawn):
+    """Lines along the base edge of each triangle.
+
+    Source: Lawonn & Guenther, Stylized Image Triangulation (2018), Sec. 5, Fig. 6d, after
+        drawings of Josh Bryan.
+    """
+
+    drawing: ClassVar[Drawing] = staticmethod(parallel_strokes)
+    portraits: ClassVar[tuple[str, ...]] = ("hatching", "hatching:colored=1")

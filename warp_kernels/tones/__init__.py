@@ -1,0 +1,1 @@
+"""Tonal art maps, drawn stroke by stroke: what hatching styles look into."""
