@@ -24,7 +24,7 @@ from warp_kernels.errors import OptionError
 from warp_kernels.solve import SUMS
 from warp_kernels.workspace import Workspace
 
-SPRING = 4000.0
+SPRING = 1500.0
 """Strength of the temporal term where the motion is certain [code value^2]: a vertex leaves the
 flow's path where the picture pulls harder than noise does."""
 FRAME_DISPLACEMENT = 0.5

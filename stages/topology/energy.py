@@ -51,7 +51,7 @@ class Energy:
     part of the mean energy of a triangle."""
     calm_relocated: float = 0.015
     """As `relocated`, in a followed picture."""
-    calm_profit: float = 3.0
+    calm_profit: float = 2.0
     """As `profit`, in a followed picture."""
     growth: Growth = TWICE
     """How the number of triangles develops in a first frame."""
