@@ -24,9 +24,9 @@ from warp_kernels.errors import OptionError
 from warp_kernels.solve import SUMS
 from warp_kernels.workspace import Workspace
 
-SPRING = 1500.0
-"""Strength of the temporal term where the motion is certain [code value^2]: a vertex leaves the
-flow's path where the picture pulls harder than noise does."""
+SPRING = 27.0
+"""Strength of the temporal term where the motion is certain, as a multiple of the mean squared
+error of the mesh: what pulls at vertices without cause grows with what triangles cannot show."""
 FRAME_DISPLACEMENT = 0.5
 """Distance of the variants in later frames [px]: a wider one finds steadier places, and beyond this
 what the last iterations of the first frame have settled would move again."""
@@ -185,13 +185,14 @@ class Triangulator:
         rounds = max(1, iterations // FRAME_ROUND - 1)
         each = iterations // (rounds + 1)
         convergence = Convergence(FRAME_SAVING, patience=1)
-        mesh = self._follow(seed.mesh, seed, each)
+        spring = SPRING * self._rmse(seed.mesh) ** 2
+        mesh = self._follow(seed.mesh, seed, spring, each)
         goal = self._goal(self._followed_count(mesh), calm=True)
         for _ in range(rounds):
             if each and convergence.is_reached(self._workspace.last_energy()):
                 break
             mesh = self._approximator.topology.adapt(mesh, self._appraiser, goal)
-            mesh = self._follow(mesh, seed, each)
+            mesh = self._follow(mesh, seed, spring, each)
         return self._snapshot(frame, self._approximator.within_limits(mesh, goal))
 
     def fit(self, frame: Frame, mesh: Mesh) -> Snapshot:
@@ -217,14 +218,21 @@ class Triangulator:
         drift = min(max(missed ** (1 / FALL), 1 - MOST_DRIFT), 1 + MOST_DRIFT)
         return max(self._least, round(mesh.triangle_count * drift))
 
-    def _follow(self, mesh: Mesh, seed: Carried, iterations: int) -> Mesh:
-        """Optimise, with every vertex on a spring to where the motion took it."""
+    def _follow(self, mesh: Mesh, seed: Carried, spring: float, iterations: int) -> Mesh:
+        """Optimise, with every vertex on a spring to where the motion took it.
+
+        Args:
+            mesh: What has become of the seed.
+            seed: Where the motion took the vertices.
+            spring: Strength of the spring where the motion is certain [code value^2].
+            iterations: Number of steps.
+        """
         springs = np.zeros((mesh.vertex_count, 3))
         springs[:, :2] = mesh.vertices
         old = np.searchsorted(seed.mesh.vertex_ids, mesh.vertex_ids)
         known = mesh.vertex_ids < seed.mesh.next_vertex_id
         springs[known, :2] = seed.mesh.vertices[old[known]]
-        springs[known, 2] = SPRING * self._space.scale * seed.trust[old[known]]
+        springs[known, 2] = spring * seed.trust[old[known]]
         load_mesh(self._workspace, mesh, springs)
         return optimize(
             self._workspace,
