@@ -74,8 +74,8 @@ LEGEND = """\
 - **inverted**: triangles without a positive area, in all frames together.
 
 Independent frames share no vertex: all go and come in each step, none flips, and there are no
-paths. Where triangles can show a picture almost exactly, as with flat shapes, even these are calm: a
-good fit is coherent by itself.
+paths. Where triangles can show a picture almost exactly, as with flat shapes, even these are calm:
+a good fit is coherent by itself.
 
 `benchmarks/coherence.py --write` makes this page; `trimotion measure SOURCE OUTPUT --track
 JOB.mtrk` prints the same for any clip.
