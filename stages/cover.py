@@ -10,7 +10,7 @@ from stages.mesh import Mesh, previous_corner
 
 MOST_ROUNDS = 30
 """Rounds of collapses; a band as wide as a fast step holds several layers of triangles."""
-LEAST_HELP = 1e-9
+LEAST_RELIEF = 1e-9
 """A collapse must lessen what is missing by more than this, which is rounding [px]."""
 
 
@@ -40,10 +40,10 @@ def collapse_covered(mesh: Mesh, steps: np.ndarray, least_height: float) -> tupl
         before = np.bincount(places, lacking[corners // 3], len(origins))
         edits, triangles, heights = collapsed_heights(moved, origins, destinations)
         after = np.maximum(0.0, least[triangles] - heights)
-        help_ = before - np.bincount(edits, after, len(origins))
-        useful = np.flatnonzero(help_ > LEAST_HELP)
+        relief = before - np.bincount(edits, after, len(origins))
+        useful = np.flatnonzero(relief > LEAST_RELIEF)
         useful = useful[collapsible(mesh, half_edges[useful], reverse=reverse[useful])]
-        useful = useful[np.argsort(-help_[useful], kind="stable")]
+        useful = useful[np.argsort(-relief[useful], kind="stable")]
         useful = useful[independent_collapses(mesh, half_edges[useful], reverse[useful])]
         if not len(useful):
             break

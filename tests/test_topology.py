@@ -252,6 +252,17 @@ def test_what_exceeds_the_count_goes(model: ColorModel, device: str) -> None:
     assert busy.mean() > 0.8
 
 
+def test_too_many_triangles_go_without_a_barred_collapse(device: str) -> None:
+    """A bug of the past: collapses barred by the largest area were made where too many stood."""
+    mesh = mesh_of_seed(0)
+    limit = 1.2 * float(mesh.areas.max())
+    appraiser = appraiser_of(device, COLOR_MODELS["constant"], noise(WIDTH, HEIGHT), mesh)
+    for _ in range(4):
+        mesh = Energy().adapt(mesh, appraiser, Goal(count=8, largest_area=limit))
+        assert_valid(mesh)
+        assert mesh.areas.max() <= limit * (1 + 1e-9)
+
+
 @pytest.mark.parametrize("name", TOPOLOGIES)
 @pytest.mark.parametrize("wanted", [2, 30, 1500])
 def test_growth_ends_where_it_shall(name: str, wanted: int) -> None:

@@ -15,3 +15,4 @@ class Crosshatching(Drawn):
     """
 
     drawing: ClassVar[Drawing] = staticmethod(crossing_strokes)
+    portraits: ClassVar[tuple[str, ...]] = ("crosshatching:spacing=3",)
