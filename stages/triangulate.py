@@ -34,7 +34,7 @@ DEAD_BAND = 0.1
 """Steps of later frames below this are not taken [px]: noise must not move what stands still."""
 FRAME_ROUND = 3
 """Iterations of later frames between two looks at the topology."""
-FRAME_SAVING = 0.01
+FRAME_SAVING = 0.0025
 """Once a round saves less than this part of the energy, a later frame is done: where little has
 changed one or two rounds are enough, where something moves fast all of them are worth it."""
 CALM_QUALITY = 0.02
@@ -59,7 +59,7 @@ class TriangulateOptions:
         default=240, metadata={"help": "optimiser iterations for the first frame of a shot"}
     )
     frame_iterations: int = field(
-        default=24, metadata={"help": "most optimiser iterations for each later frame"}
+        default=48, metadata={"help": "most optimiser iterations for each later frame"}
     )
     topology: str = field(
         default="energy",

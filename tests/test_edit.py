@@ -1,5 +1,6 @@
 """Edits of the mesh: valid results, ids, rows, and the sets they accept and refuse."""
 
+import cv2
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -20,19 +21,37 @@ from stages.edits import (
     turn_base_edge,
 )
 from stages.edits.neighbourhood import edge_ends, edge_triangles, stars
-from stages.mesh import Mesh, mesh_of, twins_of
+from stages.mesh import Mesh, areas_of, mesh_of, twins_of
 from stages.validate import assert_valid
 
 
 def unchanged_rows(before: Mesh, after: Mesh) -> np.ndarray:
-    """Old triangles whose ids are still there, checked to have kept their corners' ids."""
-    kept = np.isin(before.triangle_ids, after.triangle_ids)
-    place = {number: row for row, number in enumerate(after.triangle_ids.tolist())}
-    rows = [place[number] for number in before.triangle_ids[kept].tolist()]
-    assert np.array_equal(
-        before.vertex_ids[before.triangles[kept]], after.vertex_ids[after.triangles[rows]]
+    """Old triangles that have the same corners in the same order under the same id."""
+    rows = dict(
+        zip(after.triangle_ids.tolist(), after.vertex_ids[after.triangles].tolist(), strict=True)
     )
-    return np.flatnonzero(kept)
+    old = zip(before.triangle_ids.tolist(), before.vertex_ids[before.triangles], strict=True)
+    return np.flatnonzero([rows.get(number) == corners.tolist() for number, corners in old])
+
+
+def assert_largest_child_goes_on(before: Mesh, after: Mesh, parents: np.ndarray) -> None:
+    """The largest child of each split triangle has its id, the others fresh ones."""
+    centres = after.vertices[after.triangles].mean(axis=1)
+    fresh = after.triangle_ids >= before.next_triangle_id
+    for parent in parents:
+        children = np.flatnonzero(is_inside(centres, before.vertices[before.triangles[parent]]))
+        (heir,) = children[~fresh[children]]
+        assert after.triangle_ids[heir] == before.triangle_ids[parent]
+        assert after.areas[heir] == after.areas[children].max()
+
+
+def is_inside(points: np.ndarray, triangle: np.ndarray) -> np.ndarray:
+    """Which points lie in a triangle of positive area."""
+    sides = [
+        areas_of(np.stack(np.broadcast_arrays(triangle[i], triangle[i - 2], points), axis=1))
+        for i in range(3)
+    ]
+    return (np.array(sides) > 0).all(axis=0)
 
 
 # Splits
@@ -45,9 +64,9 @@ def test_split_triangle_makes_three_children_of_a_third_each() -> None:
     assert_valid(split)
     assert split.areas.tolist() == pytest.approx([8, 8 / 3, 8 / 3, 8 / 3])
     assert unchanged_rows(mesh, split).tolist() == [0]
-    assert split.triangle_ids.tolist() == [0, 2, 3, 4]
-    assert (split.next_vertex_id, split.next_triangle_id) == (5, 5)
-    assert split.triangles[1].tolist() == [1, 2, 4]  # the base edge 1 -> 2 stays
+    assert split.triangle_ids.tolist() == [0, 1, 2, 3]
+    assert (split.next_vertex_id, split.next_triangle_id) == (5, 4)
+    assert split.triangles[1].tolist() == [1, 2, 4]  # of equal ones that with the base edge 1 -> 2
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -61,8 +80,7 @@ def test_split_any_set_of_triangles_at_any_inner_points(seed: int) -> None:
     assert_valid(split)
     assert split.triangle_count == mesh.triangle_count + 2 * len(chosen)
     assert np.array_equal(split.vertices[mesh.vertex_count :], points)
-    fresh = split.triangle_ids >= mesh.next_triangle_id
-    assert fresh.sum() == 3 * len(chosen)
+    assert_largest_child_goes_on(mesh, split, chosen)
     assert len(unchanged_rows(mesh, split)) == mesh.triangle_count - len(chosen)
 
 
@@ -96,6 +114,8 @@ def test_split_any_independent_edges(seed: int) -> None:
     mesh = random_mesh(seed)
     edges = np.random.default_rng(seed).permutation(mesh.edge_half_edges)
     edges = edges[independent_flips(mesh, edges)]
+    touched = edge_triangles(mesh, edges)
+    touched = np.unique(touched[touched >= 0])
     inner = mesh.twins[edges] >= 0
     assert inner.any()
     assert not inner.all()
@@ -103,9 +123,16 @@ def test_split_any_independent_edges(seed: int) -> None:
     assert_valid(split)
     assert split.triangle_count == mesh.triangle_count + len(edges) + inner.sum()
     assert split.vertex_count == mesh.vertex_count + len(edges)
-    touched = np.unique(edge_triangles(mesh, edges))
     kept = np.setdiff1d(np.arange(mesh.triangle_count), touched)
     assert unchanged_rows(mesh, split).tolist() == kept.tolist()
+    uneven = split_edges(mesh, edges, _at_a_third(mesh, edges))
+    assert_largest_child_goes_on(mesh, uneven, touched)
+
+
+def _at_a_third(mesh: Mesh, edges: np.ndarray) -> np.ndarray:
+    """Points on edges, nearer to their begins."""
+    begins, ends = edge_ends(mesh, edges)
+    return (2 * mesh.vertices[begins] + mesh.vertices[ends]) / 3
 
 
 def test_split_edges_refuses_neighbours_and_points_off_the_border() -> None:
@@ -124,15 +151,40 @@ def test_split_edges_refuses_neighbours_and_points_off_the_border() -> None:
 
 
 def test_flip_exchanges_the_diagonal_of_a_square() -> None:
-    """The square's other diagonal appears, both triangles have fresh ids, the places stay."""
+    """The square's other diagonal appears, both triangles keep their places and ids."""
     mesh = two_triangles()
     (half_edge,) = np.flatnonzero(mesh.twins > np.arange(6))
     flipped = flip_edges(mesh, [half_edge])
     assert_valid(flipped)
     assert triangle_set(flipped.triangles) == {(0, 1, 2), (0, 2, 3)}
-    assert flipped.triangle_ids.tolist() == [2, 3]
-    again = flip_edges(flipped, [1])
+    assert flipped.triangle_ids.tolist() == [0, 1]
+    (half_edge,) = np.flatnonzero(flipped.twins > np.arange(6))
+    again = flip_edges(flipped, [half_edge])
     assert triangle_set(again.triangles) == triangle_set(mesh.triangles)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_flipped_triangles_go_on_where_they_were(seed: int) -> None:
+    """Ids are exchanged so that the common area is largest; two corners keep their places."""
+    mesh = random_mesh(seed)
+    edges = np.random.default_rng(seed).permutation(mesh.edge_half_edges)
+    edges = edges[flippable(mesh, edges)]
+    edges = edges[independent_flips(mesh, edges)]
+    flipped = flip_edges(mesh, edges)
+    for pair in edge_triangles(mesh, edges):
+        before, after = mesh.triangles[pair], flipped.triangles[pair]
+        assert ((before == after).sum(axis=1) == 2).all()
+        own, other = (
+            sum(common_area(mesh.vertices[x], mesh.vertices[y]) for x, y in zip(before, new))
+            for new in (after, after[::-1])
+        )
+        assert own >= other - 1e-9
+
+
+def common_area(one: np.ndarray, other: np.ndarray) -> float:
+    """Area that two triangles share, by OpenCV."""
+    area, _ = cv2.intersectConvexConvex(one.astype(np.float32), other.astype(np.float32))
+    return area
 
 
 @settings(max_examples=25, deadline=None)
@@ -143,7 +195,7 @@ def test_random_flips_keep_the_mesh_and_its_tables(seed: int) -> None:
     flipped = scrambled(mesh, seed)
     assert_valid(flipped)
     assert np.array_equal(flipped.twins, twins_of(flipped.triangles, flipped.vertex_count))
-    unchanged_rows(mesh, flipped)
+    assert np.array_equal(flipped.triangle_ids, mesh.triangle_ids)
 
 
 def test_flip_refuses_the_border_and_what_is_not_convex() -> None:

@@ -1,8 +1,9 @@
 """Pure edits Mesh -> Mesh, each over a whole set of triangles or edges at once.
 
-Untouched triangles keep their rows and ids. What an edit creates gets the next fresh ids, so
-`edited.triangle_ids >= mesh.next_triangle_id` marks the new triangles. Edits of one set must
-not touch each other: `independent_flips` and `independent_collapses` choose such sets.
+Untouched triangles keep their rows and ids. One that an edit changes goes on, under its id, as
+what shares most area with it: textures and regions are tied to ids. What there is more of gets the
+next fresh ids. Edits of one set must not touch each other: `independent_flips` and
+`independent_collapses` choose such sets.
 An edit refuses (ValueError) what would leave an invalid mesh.
 """
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from stages.edits.neighbourhood import edge_triangles
-from stages.mesh import Mesh, heights_of, next_corner, previous_corner
+from stages.mesh import Mesh, areas_of, heights_of, next_corner, previous_corner
 
 
 def flippable(mesh: Mesh, half_edges: np.ndarray, min_height: float = 0.0) -> np.ndarray:
@@ -43,8 +43,9 @@ def flipped_heights(mesh: Mesh, half_edges: np.ndarray) -> np.ndarray:
 def flip_edges(mesh: Mesh, half_edges: np.ndarray) -> Mesh:
     """Flip inner edges: triangles (a, b, c) and (b, a, d) become (a, d, c) and (b, c, d).
 
-    The new triangles take the places of the old ones and have fresh ids. Each starts with an
-    edge of the pair's outline, so no texture follows the new diagonal.
+    The new triangles take the places and the ids of the old ones, the larger those of the larger:
+    so they share the most area with what they were. The one edge that such a pair has in common
+    keeps its place in the row, hence its texture its direction.
 
     Args:
         mesh: The mesh to edit.
@@ -67,30 +68,8 @@ def flip_edges(mesh: Mesh, half_edges: np.ndarray) -> Mesh:
     if np.bincount(pairs.ravel(), minlength=1).max() > 1:
         raise ValueError("two flips share a triangle; choose them with `independent_flips`")
     triangles, twins = mesh.triangles.copy(), mesh.twins.copy()
-    flip_in_place(triangles, twins, half_edges)
-    return with_changed_rows(mesh, triangles, twins, pairs.ravel())
-
-
-def with_changed_rows(
-    mesh: Mesh, triangles: np.ndarray, twins: np.ndarray, changed: np.ndarray
-) -> Mesh:
-    """A mesh after flips.
-
-    Args:
-        mesh: The mesh before.
-        triangles: All rows after, shape [T, 3].
-        twins: Their twin table, shape [3T] int32.
-        changed: Numbers of the triangles that were flipped, shape [N]; they get fresh ids.
-    """
-    ids = mesh.triangle_ids.copy()
-    ids[changed] = mesh.next_triangle_id + np.arange(len(changed))
-    flipped = replace(
-        mesh,
-        triangles=triangles,
-        triangle_ids=ids,
-        next_triangle_id=mesh.next_triangle_id + len(changed),
-    )
-    return flipped.with_twins(twins)
+    flip_in_place(mesh.vertices, triangles, twins, half_edges)
+    return replace(mesh, triangles=triangles).with_twins(twins)
 
 
 def flipped_rows(
@@ -104,34 +83,58 @@ def flipped_rows(
     return np.stack([a, d, c], axis=1), np.stack([b, c, d], axis=1)
 
 
-def flip_in_place(triangles: np.ndarray, twins: np.ndarray, half_edges: np.ndarray) -> None:
+def flip_in_place(
+    vertices: np.ndarray, triangles: np.ndarray, twins: np.ndarray, half_edges: np.ndarray
+) -> np.ndarray:
     """Flip independent inner edges in working tables, at a cost of their number.
 
+    Of each triangle one corner moves to the far end of the new diagonal: either the one at the
+    end of its half-edge, or the one at its begin.
+
     Args:
+        vertices: Positions [px], shape [V, 2].
         triangles: Rows, shape [T, 3]; updated.
         twins: Twin table, shape [3T] int32; updated.
         half_edges: Half-edge numbers, shape [N]; no two edges share a triangle.
+
+    Returns:
+        Half-edges around the pairs, shape [4N].
     """
     opposite = twins[half_edges]
-    left, right = half_edges // 3, opposite // 3
-    rows = flipped_rows(triangles, twins, half_edges)
-    # The outline d<-a, c->a, b->c, d->b before and after; corner 1 of both is the new diagonal.
-    before = np.concatenate(
-        [
-            next_corner(opposite),
-            previous_corner(half_edges),
-            next_corner(half_edges),
-            previous_corner(opposite),
-        ]
+    begins = _begins_move(vertices, triangles, twins, half_edges)
+    corners = triangles.reshape(-1)
+    c, d = corners[previous_corner(half_edges)], corners[previous_corner(opposite)]
+    corners[np.where(begins, half_edges, next_corner(half_edges))] = d
+    corners[np.where(begins, opposite, next_corner(opposite))] = c
+    # The places of the new diagonal are those of the edges that change triangles, which go where
+    # the old diagonal was.
+    left, right = (
+        np.where(begins, previous_corner(e), next_corner(e)) for e in (half_edges, opposite)
     )
-    after = np.concatenate([3 * left, 3 * left + 2, 3 * right, 3 * right + 2])
+    before, after = np.concatenate([right, left]), np.concatenate([half_edges, opposite])
     moved = np.arange(len(twins), dtype=np.int32)
     moved[before] = after
     # A neighbour across the outline may be flipped in the same batch: its number moves as well.
     neighbours = twins[before]
     inner = neighbours >= 0
     neighbours[inner] = moved[neighbours[inner]]
-    triangles[left], triangles[right] = rows
     twins[after] = neighbours
     twins[neighbours[inner]] = after[inner]
-    twins[3 * left + 1], twins[3 * right + 1] = 3 * right + 1, 3 * left + 1
+    twins[left], twins[right] = right, left
+    diagonals = np.concatenate([left, right])
+    return np.concatenate([next_corner(diagonals), previous_corner(diagonals)])
+
+
+def _begins_move(
+    vertices: np.ndarray, triangles: np.ndarray, twins: np.ndarray, half_edges: np.ndarray
+) -> np.ndarray:
+    """Whether (a, b, c) becomes (d, b, c) rather than (a, d, c), [N] bool.
+
+    The diagonals cut each other in the ratio of the new areas, so the common area is largest
+    where the larger of the old triangles becomes the larger of the new ones.
+    """
+    near_a, near_b = flipped_rows(triangles, twins, half_edges)
+    new = areas_of(vertices[near_a]) - areas_of(vertices[near_b])
+    left, right = triangles[half_edges // 3], triangles[twins[half_edges] // 3]
+    old = areas_of(vertices[left]) - areas_of(vertices[right])
+    return new * old < 0

@@ -1,8 +1,10 @@
 """Restore the Delaunay property by edge flips."""
 
+from dataclasses import replace
+
 import numpy as np
 
-from stages.edits.flip_edges import flip_in_place, with_changed_rows
+from stages.edits.flip_edges import flip_in_place
 from stages.mesh import Mesh, next_corner, previous_corner
 
 ANGLE_TOLERANCE = 1e-12
@@ -18,7 +20,7 @@ def legalise(mesh: Mesh, where: np.ndarray | None = None) -> Mesh:
 
     Flips run in batches that do not touch each other, with local updates of the tables. The
     result is the Delaunay triangulation of the vertices (one of them, where four lie on a
-    circle). Flipped triangles keep their places and get fresh ids.
+    circle). Flipped triangles go on as in `flip_edges`.
 
     Args:
         mesh: The mesh to edit.
@@ -33,20 +35,17 @@ def legalise(mesh: Mesh, where: np.ndarray | None = None) -> Mesh:
     suspects = suspects[twins[suspects] >= 0]
     if where is not None:
         suspects = suspects[where[suspects // 3] | where[twins[suspects] // 3]]
-    changed = np.zeros(mesh.triangle_count, dtype=bool)
     while True:
         illegal = suspects[_illegal(points, triangles.reshape(-1), twins, suspects)]
         if not len(illegal):
             break
         pairs = np.stack([illegal // 3, twins[illegal] // 3], axis=1)
         chosen, touched = _separate(pairs, mesh.triangle_count)
-        flip_in_place(triangles, twins, illegal[chosen])
-        changed[pairs[chosen]] = True
-        outline = (3 * pairs[chosen].reshape(-1, 1) + np.array([0, 2])).reshape(-1)
+        outline = flip_in_place(mesh.vertices, triangles, twins, illegal[chosen])
         suspects = np.concatenate([illegal[~touched], outline[twins[outline] >= 0]])
-    if not changed.any():
+    if np.array_equal(triangles, mesh.triangles):
         return mesh
-    return with_changed_rows(mesh, triangles, twins, np.flatnonzero(changed))
+    return replace(mesh, triangles=triangles).with_twins(twins)
 
 
 def _illegal(

@@ -11,9 +11,8 @@ from stages.mesh import Mesh, areas_of
 def split_triangles(mesh: Mesh, triangles: np.ndarray, points: np.ndarray | None = None) -> Mesh:
     """Insert a vertex into each of some triangles.
 
-    Every child is its parent's row with one corner replaced by the new vertex. The child that
-    keeps the base edge takes the parent's place in the arrays, the other two are appended. All
-    three have fresh ids.
+    Every child is its parent's row with one corner replaced by the new vertex. The largest takes
+    the parent's place and id, the other two are appended and have fresh ids.
 
     Args:
         mesh: The mesh to edit.
@@ -40,8 +39,7 @@ def split_edges(mesh: Mesh, half_edges: np.ndarray, points: np.ndarray | None = 
     """Insert a vertex into each of some edges, inner or on the border.
 
     Both children of a triangle are its row with one end of the edge replaced by the new vertex.
-    The one with the half-edge's origin takes the parent's place in the arrays, the other is
-    appended. All have fresh ids.
+    The larger takes the parent's place and id, the other is appended and has a fresh one.
 
     Args:
         mesh: The mesh to edit.
@@ -93,28 +91,28 @@ def _with_children(
         mesh: The mesh to edit.
         points: New vertices [px], shape [N, 2].
         parents: Triangle numbers, shape [M].
-        children: Rows, shape [C, M, 3]; the first of C takes the parent's place.
+        children: Rows, shape [C, M, 3]; of C the largest takes the parent's place and id.
 
     Raises:
         ValueError: If a child has no positive area.
     """
     vertices = np.concatenate([mesh.vertices, points])
-    areas = areas_of(vertices[children.reshape(-1, 3)])
+    areas = areas_of(vertices[children.reshape(-1, 3)]).reshape(len(children), -1)
     if not (areas > 0).all():
-        parent = parents[np.argmin(areas) % len(parents)]
+        parent = parents[areas.min(axis=0).argmin()]
         raise ValueError(f"the point for triangle {parent} does not lie strictly inside it")
+    largest_first = np.argsort(-areas, axis=0, kind="stable")
+    children = np.take_along_axis(children, largest_first[:, :, None], axis=0)
     rows = np.concatenate([mesh.triangles, children[1:].reshape(-1, 3)])
     rows[parents] = children[0]
-    ids = np.concatenate([mesh.triangle_ids, np.empty(len(rows) - mesh.triangle_count, np.int64)])
-    renewed = np.concatenate([parents, np.arange(mesh.triangle_count, len(rows))])
-    ids[renewed] = mesh.next_triangle_id + np.arange(len(renewed))
+    new_triangle_ids = mesh.next_triangle_id + np.arange(len(rows) - mesh.triangle_count)
     new_vertex_ids = mesh.next_vertex_id + np.arange(len(points))
     return replace(
         mesh,
         vertices=vertices,
         triangles=rows,
         vertex_ids=np.concatenate([mesh.vertex_ids, new_vertex_ids]),
-        triangle_ids=ids,
+        triangle_ids=np.concatenate([mesh.triangle_ids, new_triangle_ids]),
         next_vertex_id=mesh.next_vertex_id + len(points),
-        next_triangle_id=mesh.next_triangle_id + len(renewed),
+        next_triangle_id=mesh.next_triangle_id + len(new_triangle_ids),
     )

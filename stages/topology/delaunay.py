@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from stages.appraise import Appraiser
 from stages.collapse import collapse_slivers
+from stages.correspond import kept_triangles
 from stages.divide import divide_large
 from stages.edits import legalise
 from stages.mesh import Mesh
@@ -34,9 +35,9 @@ class Delaunay:
             goal: What to reach. Followed calmly, only the surroundings of what changed are made
                 Delaunay again: restoring the whole mesh would make triangles pop in every frame.
         """
-        fresh = mesh.next_triangle_id
+        before = mesh
         mesh = collapse_slivers(mesh, SLIVER_HEIGHT)
         energies = appraiser.energies(mesh)
         mesh = split_worst(mesh, energies, count=goal.count, threshold=goal.threshold)
-        mesh = legalise(mesh, mesh.triangle_ids >= fresh if goal.calm else None)
+        mesh = legalise(mesh, kept_triangles(before, mesh) < 0 if goal.calm else None)
         return divide_large(mesh, goal.largest_area)
