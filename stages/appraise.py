@@ -3,7 +3,7 @@
 import numpy as np
 
 from stages.mesh import Mesh
-from stages.optimize import load_mesh
+from stages.optimize import place_mesh
 from stages.snapshot import colors_at_centres
 from warp_kernels.survey import Survey
 from warp_kernels.workspace import Workspace
@@ -35,7 +35,7 @@ class Appraiser:
         """
         if mesh is self._measured:
             return self._energies
-        load_mesh(self._workspace, mesh)
+        place_mesh(self._workspace, mesh)
         coefficients, self._energies, self.counts = self._workspace.fit()
         self.colors = colors_at_centres(mesh, self._workspace.model, coefficients)
         self._survey.load_topology(mesh.twins, mesh.triangles.reshape(-1))

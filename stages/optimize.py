@@ -32,7 +32,7 @@ class OptimizeOptions:
 
 
 def load_mesh(workspace: Workspace, mesh: Mesh, springs: np.ndarray | None = None) -> None:
-    """Put a mesh into device memory.
+    """Put a mesh into device memory, where `optimize` starts from it.
 
     Args:
         workspace: Takes the mesh.
@@ -40,6 +40,19 @@ def load_mesh(workspace: Workspace, mesh: Mesh, springs: np.ndarray | None = Non
         springs: Where the temporal term holds each vertex [px] and how strongly
             [code value^2], [V, 3]; None for not at all.
     """
+    place_mesh(workspace, mesh)
+    workspace.hold(np.zeros((mesh.vertex_count, 3)) if springs is None else springs)
+
+
+def place_mesh(workspace: Workspace, mesh: Mesh) -> None:
+    """Put a mesh into device memory, unless it lies there already, to be measured.
+
+    Args:
+        workspace: Takes the mesh.
+        mesh: The mesh.
+    """
+    if workspace.placed is mesh:
+        return
     freedom = np.stack([~mesh.on_left_right, ~mesh.on_top_bottom], axis=1).astype(np.float64)
     workspace.load_mesh(
         vertices=mesh.vertices,
@@ -49,8 +62,8 @@ def load_mesh(workspace: Workspace, mesh: Mesh, springs: np.ndarray | None = Non
         fan_offsets=mesh.fan_offsets,
         fan_corners=mesh.fan_corners,
         freedom=freedom,
-        anchors=np.zeros((mesh.vertex_count, 3)) if springs is None else springs,
     )
+    workspace.placed = mesh
 
 
 def optimize(
@@ -87,4 +100,5 @@ def optimize(
         dead_band=dead_band,
         displacement=displacement,
     )
-    return mesh.moved(workspace.vertices())
+    workspace.placed = mesh.moved(workspace.vertices())
+    return workspace.placed

@@ -175,7 +175,10 @@ def test_flipped_triangles_go_on_where_they_were(seed: int) -> None:
         before, after = mesh.triangles[pair], flipped.triangles[pair]
         assert ((before == after).sum(axis=1) == 2).all()
         own, other = (
-            sum(common_area(mesh.vertices[x], mesh.vertices[y]) for x, y in zip(before, new))
+            sum(
+                common_area(mesh.vertices[x], mesh.vertices[y])
+                for x, y in zip(before, new, strict=True)
+            )
             for new in (after, after[::-1])
         )
         assert own >= other - 1e-9

@@ -81,6 +81,8 @@ class Workspace:
         self.generation = 0
         """How often the arrays have moved: what was recorded over them before is void."""
         self._front = 0
+        self.placed: object = None
+        """What its owner put there as a mesh, to be known again; None for nothing known."""
         self._allocate(vertices=512, triangles=1024)
 
     def load_image(self, pixels: np.ndarray, weights: np.ndarray | None = None) -> None:
@@ -125,9 +127,10 @@ class Workspace:
         fan_offsets: np.ndarray,
         fan_corners: np.ndarray,
         freedom: np.ndarray,
-        anchors: np.ndarray,
     ) -> None:
-        """Take in a mesh; see the launchers for the arrays.
+        """Take in a mesh, to be measured; `hold` prepares it for iterations.
+
+        See the launchers for the arrays.
 
         Args:
             vertices: Positions [px], [V, 2].
@@ -137,8 +140,8 @@ class Workspace:
             fan_offsets: Beginning of each vertex's corners, [V + 1].
             fan_corners: Corners 3 t + c by vertex, [3 T].
             freedom: 1 where a coordinate may change, else 0, [V, 2].
-            anchors: Position [px] and weight [code value^2] of the temporal term, [V, 3].
         """
+        self.placed = None
         self._counts = (len(vertices), len(triangles), len(edges))
         self._grow()
         self._front = 0
@@ -150,14 +153,21 @@ class Workspace:
             (self._fan_offsets, fan_offsets),
             (self._fan_corners, fan_corners),
             (self._freedom, freedom),
-            (self._anchors, anchors),
         ):
             self.device.write(array, values)
-        memory = np.zeros((len(vertices), 4))
-        memory[:, :2] = FAR
-        self.device.write(self._memory, memory)
         self.device.write(self._moved, np.ones(len(vertices), dtype=np.int32))
         self._resize()
+
+    def hold(self, anchors: np.ndarray) -> None:
+        """Fix the temporal term, and forget the steps that vertices took before.
+
+        Args:
+            anchors: Position [px] and weight [code value^2] of every vertex, [V, 3].
+        """
+        self.device.write(self._anchors, anchors)
+        memory = np.zeros((self._counts[0], 4))
+        memory[:, :2] = FAR
+        self.device.write(self._memory, memory)
 
     def iterate(
         self,
