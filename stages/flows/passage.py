@@ -10,6 +10,12 @@ from stages.flows.vote import reduced, vote
 DOUBTFUL = 2.0
 """Motion is trusted by half where patches differ by this in the mean [code values]; found by trial
 on three clips, see docs/following.md."""
+CLOSING = 0.2
+"""A point may be covered where the motion around it closes in faster than this [1/frame]."""
+LOST = 6.0
+"""It is, if its patch is not found again either: the best differs by more than this [code values].
+Lower bars find more of what is covered on sequences of known motion, and take more than they should
+from films, see docs/following.md."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,14 +42,20 @@ class Passage:
         """
         return cls(flow, reduced(earlier), reduced(later), np.array_equal(earlier, later))
 
-    def follow(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def follow(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Motion of points, each of which stands on what is in front.
 
         Args:
             points: Positions in the earlier picture [px], shape [N, 2].
 
         Returns:
-            Motion [px], shape [N, 2], and how far it is to be trusted [0..1], shape [N].
+            Motion [px], shape [N, 2]; how far it is to be trusted [0..1], shape [N]; and which
+            points something comes to lie over, shape [N] bool.
+
+        Source: Sand & Teller, Particle Video (2006), tell what is covered by the same two signs.
+        Deviation: no flow back is compared. It costs as much again, and at the same number of
+            points marked wrongly it finds hardly more of what is covered.
         """
-        steps, misfits = vote(points, self.flow, self.earlier, self.later)
-        return steps, 1.0 / (1.0 + (misfits.astype(np.float64) / DOUBTFUL) ** 2)
+        steps, misfits, closing = vote(points, self.flow, self.earlier, self.later)
+        trust = 1.0 / (1.0 + (misfits.astype(np.float64) / DOUBTFUL) ** 2)
+        return steps, trust, (closing > CLOSING) & (misfits > LOST)
