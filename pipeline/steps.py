@@ -13,6 +13,7 @@ from pathlib import Path
 from pipeline.job import Job
 from pipeline.shots import AHEAD, ShotFrame, read_cuts
 from stages.flows.passage import Passage
+from stages.flows.view import View
 from stages.frame import Frame
 from stages.media import Decoder, FrameRange, MediaInfo, count_frames, open_decoder
 from warp_kernels.errors import MediaError
@@ -79,10 +80,12 @@ def steps(
         notes: Receives a sentence if a track begins inside a shot.
     """
     before: Frame | None = None
+    earlier: View | None = None
     shot = None if reached is None else reached.shot
     last = None if reached is None else reached.frame
     for shot_frame in shot_frames:
         frame = shot_frame.frame
+        later = View(frame.pixels)
         if holds(job.frame_range, frame, info) and (reached is None or frame.index > reached.frame):
             joined = before is not None and before.index == last
             if job.track is not None and not (joined or shot_frame.opens_shot or job.independent):
@@ -90,12 +93,11 @@ def steps(
             if shot is None or shot_frame.opens_shot or not joined:
                 shot = frame.index
             passage: Passage | None = None
-            if before is not None and shot != frame.index and not job.independent:
-                motion = job.flow.estimate(before.pixels, frame.pixels)
-                passage = Passage.along(motion, before.pixels, frame.pixels)
+            if earlier is not None and shot != frame.index and not job.independent:
+                passage = Passage.between(job.flow, earlier, later)
             yield Step(frame, passage, shot)
             last = frame.index
-        before = frame
+        before, earlier = frame, later
 
 
 def holds(wanted: FrameRange, frame: Frame, info: MediaInfo) -> bool:

@@ -9,6 +9,7 @@ from meshes import HEIGHT, WIDTH, random_mesh, scrambled
 from stages.advect import LOWEST, advect
 from stages.flows.field import FlowField
 from stages.flows.passage import Passage
+from stages.flows.view import View
 from stages.layouts.grid import Grid
 from stages.mesh import Mesh
 from stages.validate import assert_valid
@@ -17,7 +18,7 @@ from stages.validate import assert_valid
 def along(flow: FlowField) -> Passage:
     """A passage between plain pictures, in which no patch speaks against the flow."""
     plain = np.zeros((flow.height, flow.width, 3), dtype=np.uint8)
-    return Passage.along(flow, plain, plain)
+    return Passage(flow, View(plain), View(plain))
 
 
 def constant(mesh: Mesh, dx: float, dy: float) -> Passage:

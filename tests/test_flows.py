@@ -9,6 +9,7 @@ import pytest
 from stages.flows import FLOWS
 from stages.flows.dis import PRESETS, Dis
 from stages.flows.field import FlowField
+from stages.flows.view import View
 from warp_kernels.errors import OptionError
 
 SIZES = [(1, 1), (2, 2), (2, 720), (11, 40), (12, 12), (12, 320), (16, 320), (500, 13), (64, 48)]
@@ -45,7 +46,7 @@ def shifted(height: int, width: int, dx: int, dy: int) -> tuple[np.ndarray, np.n
 def test_every_flow_takes_every_size(name: str, size: tuple[int, int]) -> None:
     """Tiny, narrow and constant pictures give finite motion of the right shape."""
     for pixels in (textured(*size), np.full((*size, 3), 9, dtype=np.uint8)):
-        field = FLOWS[name]().estimate(pixels, pixels[::-1].copy())
+        field = FLOWS[name]().estimate(View(pixels), View(pixels[::-1].copy()))
         assert (field.height, field.width) == size
         motion = field.at(np.array([[0.0, 0.0], [size[1], size[0]], [0.5, 0.5]]))
         assert motion.shape == (3, 2)
@@ -56,7 +57,7 @@ def test_every_flow_takes_every_size(name: str, size: tuple[int, int]) -> None:
 def test_every_flow_leaves_a_still_picture_at_rest(name: str) -> None:
     """Two equal pictures have no motion."""
     pixels = textured(60, 80)
-    field = FLOWS[name]().estimate(pixels, pixels.copy())
+    field = FLOWS[name]().estimate(View(pixels), View(pixels.copy()))
     assert np.abs(field.vectors).max() < 0.02
 
 
@@ -67,7 +68,7 @@ def test_every_flow_is_equal_for_every_number_of_threads(name: str) -> None:
     flow, results = FLOWS[name](), []
     for threads in (1, 2, 4, 4):
         cv2.setNumThreads(threads)
-        results.append(flow.estimate(before, after).vectors)
+        results.append(flow.estimate(View(before), View(after)).vectors)
     assert all(np.array_equal(results[0], other) for other in results[1:])
 
 
@@ -75,7 +76,7 @@ def test_every_flow_is_equal_for_every_number_of_threads(name: str) -> None:
 def test_dis_finds_a_shift(preset: str) -> None:
     """A shift by whole pixels is found, with its sign, away from the border."""
     before, after = shifted(120, 160, 6, -4)
-    field = Dis(preset=preset).estimate(before, after)
+    field = Dis(preset=preset).estimate(View(before), View(after))
     x, y = np.meshgrid(np.arange(30, 130, 5), np.arange(30, 90, 5))
     motion = field.at(np.stack([x.ravel(), y.ravel()], axis=1).astype(float))
     assert np.abs(motion - (6, -4)).mean() < 0.25
@@ -84,7 +85,7 @@ def test_dis_finds_a_shift(preset: str) -> None:
 def test_reduced_pictures_give_motion_in_full_pixels() -> None:
     """Half the lines halve the pictures, not the vectors."""
     before, after = shifted(240, 320, 8, 4)
-    field = Dis(lines=120).estimate(before, after)
+    field = Dis(lines=120).estimate(View(before), View(after))
     assert field.vectors.shape == (120, 160, 2)
     assert np.abs(field.at(np.array([[160.0, 120.0]])) - (8, 4)).max() < 0.5
 
@@ -92,14 +93,14 @@ def test_reduced_pictures_give_motion_in_full_pixels() -> None:
 def test_a_narrow_picture_is_still_when_reduced_below_the_limit() -> None:
     """Pictures under 12 px count as still instead of failing."""
     before, after = shifted(11, 300, 3, 0)
-    assert not Dis().estimate(before, after).vectors.any()
+    assert not Dis().estimate(View(before), View(after)).vectors.any()
 
 
 @pytest.mark.parametrize("size", [(12, 48), (14, 64), (16, 80), (20, 100), (28, 500), (31, 31)])
 @pytest.mark.parametrize("preset", PRESETS)
 def test_wide_and_low_pictures_do_not_crash(preset: str, size: tuple[int, int]) -> None:
     """Sizes at which OpenCV's own choice of pyramid levels reads out of bounds."""
-    field = Dis(preset=preset).estimate(textured(*size), textured(*size, seed=1))
+    field = Dis(preset=preset).estimate(View(textured(*size)), View(textured(*size, seed=1)))
     assert np.isfinite(field.vectors).all()
 
 

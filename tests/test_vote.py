@@ -6,8 +6,10 @@ import pytest
 from meshes import HEIGHT, WIDTH, random_mesh, scrambled
 
 from stages.cover import collapse_covered, collapse_vertices
+from stages.flows.dis import Dis
 from stages.flows.field import FlowField
 from stages.flows.passage import Passage
+from stages.flows.view import View
 from stages.layouts.grid import Grid
 from stages.validate import assert_valid
 
@@ -33,11 +35,16 @@ def field(motion: np.ndarray) -> FlowField:
     return FlowField(SIZE, SIZE, motion.astype(np.float32))
 
 
+def passage_along(flow: FlowField, earlier: np.ndarray, later: np.ndarray) -> Passage:
+    """A passage between pictures [SIZE, SIZE, 3] whose motion is given."""
+    return Passage(flow, View(earlier), View(later))
+
+
 def test_points_on_an_outline_move_with_what_is_in_front() -> None:
     """The estimate gives the card's rim the motion of the ground; its patches know better."""
     motion = np.zeros((SIZE, SIZE, 2))
     motion[33:67, 23:57, 0] = 5.0  # 3 px of the card are missed on every side
-    passage = Passage.along(field(motion), card(20), card(25))
+    passage = passage_along(field(motion), card(20), card(25))
     rim = np.array([[21.0, y] for y in (40.0, 50.0, 60.0)])
     assert np.array_equal(passage.flow.at(rim), np.zeros((3, 2)))
     steps, _, _ = passage.follow(rim)
@@ -48,7 +55,7 @@ def test_a_right_flow_is_kept_and_trusted() -> None:
     """Where the flow is right its own motion wins, inside of the card and beside it."""
     motion = np.zeros((SIZE, SIZE, 2))
     motion[30:70, 20:60, 0] = 5.0
-    passage = Passage.along(field(motion), card(20), card(25))
+    passage = passage_along(field(motion), card(20), card(25))
     steps, trust, _ = passage.follow(np.array([[40.0, 50.0], [80.0, 15.0]]))
     assert np.array_equal(steps, [[5.0, 0.0], [0.0, 0.0]])
     assert np.array_equal(trust, [1.0, 1.0])
@@ -56,7 +63,7 @@ def test_a_right_flow_is_kept_and_trusted() -> None:
 
 def test_what_no_motion_explains_is_not_trusted() -> None:
     """Another picture altogether leaves next to nothing to hold on to."""
-    passage = Passage.along(FlowField.still(SIZE, SIZE), texture(2), texture(3))
+    passage = passage_along(FlowField.still(SIZE, SIZE), texture(2), texture(3))
     _, trust, _ = passage.follow(np.random.default_rng(0).uniform(8, SIZE - 8, (50, 2)))
     assert np.median(trust) < 0.02
 
@@ -65,7 +72,7 @@ def test_plain_pictures_follow_the_flow() -> None:
     """Where nothing can be seen nothing speaks against the flow."""
     plain = np.full((SIZE, SIZE, 3), 90, np.uint8)
     motion = np.full((1, 1, 2), 2.5, np.float32)
-    steps, trust, _ = Passage.along(FlowField(SIZE, SIZE, motion), plain, plain).follow(
+    steps, trust, _ = passage_along(FlowField(SIZE, SIZE, motion), plain, plain).follow(
         np.array([[0.0, 0.0], [50.0, 50.0], [96.0, 20.0]])
     )
     assert (steps == 2.5).all()
@@ -76,7 +83,7 @@ def test_what_the_card_comes_to_lie_over_is_covered() -> None:
     """The ground before the card goes; the card, the ground behind and what is far away stay."""
     motion = np.zeros((SIZE, SIZE, 2))
     motion[30:70, 20:60, 0] = 12.0
-    passage = Passage.along(field(motion), card(20), card(32))
+    passage = passage_along(field(motion), card(20), card(32))
     heights = np.arange(38.0, 63.0)
     columns = {
         "before": (61.0, 62.5),
@@ -100,18 +107,17 @@ def test_what_comes_nearer_or_goes_away_is_not_covered() -> None:
     inwards = -0.15 * np.stack([x - SIZE / 2, y - SIZE / 2], axis=2)
     turn = np.array([[0.85, 0, 0.15 * (SIZE / 2 - 0.5)], [0, 0.85, 0.15 * (SIZE / 2 - 0.5)]])
     large = cv2.GaussianBlur(texture(0), (0, 0), 2)
-    passage = Passage.along(field(inwards), large, cv2.warpAffine(large, turn, (SIZE, SIZE)))
+    passage = passage_along(field(inwards), large, cv2.warpAffine(large, turn, (SIZE, SIZE)))
     points = np.random.default_rng(0).uniform(20, SIZE - 20, (50, 2))
     assert not passage.follow(points)[2].any()
 
 
 def test_only_equal_pictures_stand_still() -> None:
     """One code value is a difference."""
-    flow = FlowField.still(SIZE, SIZE)
     other = texture(0)
     other[3, 4, 1] ^= 1
-    assert Passage.along(flow, texture(0), texture(0)).is_still
-    assert not Passage.along(flow, texture(0), other).is_still
+    assert Passage.between(Dis(), View(texture(0)), View(texture(0))).is_still
+    assert not Passage.between(Dis(), View(texture(0)), View(other)).is_still
 
 
 def test_a_band_that_is_covered_collapses() -> None:

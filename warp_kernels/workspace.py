@@ -71,18 +71,14 @@ class Workspace:
         self._probe = self._empty(1, wp.int32)
         self._displacement = 0.0
         self._tables = record_image_tables(
-            device,
-            self.layout,
-            pixels=self._pixels,
-            weights=self._weights,
-            table_out=self.table,
+            device, self.layout, pixels=self._pixels, weights=self._weights, table_out=self.table
         )
         self._counts = (0, 0, 0)
         self.generation = 0
         """How often the arrays have moved: what was recorded over them before is void."""
         self._front = 0
         self.placed: object = None
-        """What its owner put there as a mesh, to be known again; None for nothing known."""
+        """The mesh that lies here, as its owner knows it."""
         self._allocate(vertices=512, triangles=1024)
 
     def load_image(self, pixels: np.ndarray, weights: np.ndarray | None = None) -> None:
@@ -130,8 +126,6 @@ class Workspace:
     ) -> None:
         """Take in a mesh, to be measured; `hold` prepares it for iterations.
 
-        See the launchers for the arrays.
-
         Args:
             vertices: Positions [px], [V, 2].
             triangles: Corners, [T, 3].
@@ -165,9 +159,7 @@ class Workspace:
             anchors: Position [px] and weight [code value^2] of every vertex, [V, 3].
         """
         self.device.write(self._anchors, anchors)
-        memory = np.zeros((self._counts[0], 4))
-        memory[:, :2] = FAR
-        self.device.write(self._memory, memory)
+        self.device.write(self._memory, np.tile((FAR, FAR, 0.0, 0.0), (self._counts[0], 1)))
 
     def iterate(
         self,
@@ -232,7 +224,7 @@ class Workspace:
         """
         self._displace(DISPLACEMENT)
         self.device.run([self._moments[self._front]])
-        count = self._counts[2] if self.sums == "edges" else self._counts[1]
+        count = self._counts[2 if self.sums == "edges" else 1]
         color, area = (self.device.read(s, count) for s in (self._color_sums, self._area_sums))
         return color.view(np.int64), area.view(np.int64)
 
@@ -255,17 +247,14 @@ class Workspace:
         """Set the distance of the variants; sums taken at another one are void."""
         if displacement != self._displacement:
             self._displacement = displacement
-            units = np.array([round(displacement * SUBPIXELS)], dtype=np.int32)
-            self.device.write(self._probe, units)
+            self.device.write(self._probe, np.array([round(displacement * SUBPIXELS)], np.int32))
             self.device.write(self._moved, np.ones(self._counts[0], dtype=np.int32))
 
     def _grow(self) -> None:
-        vertices, triangles, _ = self._counts
-        if vertices > self._capacity[0] or triangles > self._capacity[1]:
-            self._allocate(
-                vertices=max(self._capacity[0], vertices * 3 // 2),
-                triangles=max(self._capacity[1], triangles * 3 // 2),
-            )
+        had, needed = np.array(self._capacity), np.array(self._counts[:2])
+        if (needed > had).any():
+            vertices, triangles = np.maximum(had, needed * 3 // 2).tolist()
+            self._allocate(vertices=vertices, triangles=triangles)
 
     def _allocate(self, *, vertices: int, triangles: int) -> None:
         self._capacity = (vertices, triangles)

@@ -6,6 +6,7 @@ import cv2
 import numpy as np
 
 from stages.flows.field import FlowField
+from stages.flows.view import View
 from warp_kernels.errors import OptionError
 
 SMALLEST = 12
@@ -71,32 +72,27 @@ class Dis:
         if self.lines < SMALLEST:
             raise OptionError(f"flow at {self.lines} lines; use {SMALLEST} or more")
 
-    def estimate(self, previous: np.ndarray, current: np.ndarray) -> FlowField:
+    def estimate(self, previous: View, current: View) -> FlowField:
         """Find where the points of one picture are in the next.
 
         Args:
-            previous: The earlier picture, shape [H, W, 3] uint8.
+            previous: The earlier picture.
             current: The later picture, of the same size.
         """
-        height, width = current.shape[:2]
-        scale = min(1.0, self.lines / min(height, width))
-        size = (round(scale * width), round(scale * height))
-        if min(size) < SMALLEST:
-            return FlowField.still(width, height)
-        before, after = (
-            cv2.resize(cv2.cvtColor(p, cv2.COLOR_RGB2GRAY), size, interpolation=cv2.INTER_AREA)
-            for p in (previous, current)
-        )
+        before, after = previous.reduced(self.lines), current.reduced(self.lines)
+        height, width = after.shape
+        if min(height, width) < SMALLEST:
+            return FlowField.still(current.width, current.height)
         effort = PRESETS[self.preset]
         search = cv2.DISOpticalFlow.create(effort.preset)
-        search.setFinestScale(min(effort.finest_level, _coarsest_level(size)))
+        search.setFinestScale(min(effort.finest_level, _coarsest_level((width, height))))
         search.setPatchStride(effort.stride)
         search.setGradientDescentIterations(effort.descents)
         search.setVariationalRefinementIterations(effort.refinements)
         # OpenCV's annotations leave out that the initial flow is optional.
         vectors = search.calc(before, after, None)  # type: ignore[call-overload]
-        vectors *= np.array([width / size[0], height / size[1]], dtype=np.float32)
-        return FlowField(width, height, vectors)
+        vectors *= np.array([current.width / width, current.height / height], dtype=np.float32)
+        return FlowField(current.width, current.height, vectors)
 
 
 def _coarsest_level(size: tuple[int, int]) -> int:

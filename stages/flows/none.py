@@ -2,9 +2,8 @@
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from stages.flows.field import FlowField
+from stages.flows.view import View
 
 
 @dataclass(frozen=True)
@@ -14,6 +13,6 @@ class NoFlow:
     Source: Lawonn & Guenther, Stylized Image Triangulation (2018), Sec. 6.3.
     """
 
-    def estimate(self, previous: np.ndarray, current: np.ndarray) -> FlowField:
-        """Return no motion, whatever the pictures [H, W, 3] uint8 show."""
-        return FlowField.still(current.shape[1], current.shape[0])
+    def estimate(self, previous: View, current: View) -> FlowField:
+        """Return no motion, whatever the pictures show."""
+        return FlowField.still(current.width, current.height)

@@ -4,8 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from stages.flows import Flow
 from stages.flows.field import FlowField
-from stages.flows.vote import reduced, vote
+from stages.flows.view import View
+from stages.flows.vote import LINES, vote
 
 DOUBTFUL = 2.0
 """Motion is trusted by half where patches differ by this in the mean [code values]; found by trial
@@ -24,23 +26,25 @@ class Passage:
 
     flow: FlowField
     """The estimate."""
-    earlier: np.ndarray
-    """The picture that it leads from, `reduced`."""
-    later: np.ndarray
-    """The picture that it leads to, `reduced`."""
-    is_still: bool
+    earlier: View
+    """The picture that it leads from."""
+    later: View
+    """The picture that it leads to."""
+    is_still: bool = False
     """Whether both pictures are the same to the bit."""
 
     @classmethod
-    def along(cls, flow: FlowField, earlier: np.ndarray, later: np.ndarray) -> "Passage":
+    def between(cls, flow: Flow, earlier: View, later: View) -> "Passage":
         """The passage between two pictures.
 
         Args:
-            flow: Motion from the earlier to the later one.
-            earlier: Shape [H, W, 3] uint8.
-            later: Of the same shape.
+            flow: Estimates the motion.
+            earlier: A picture.
+            later: The next one, of the same size.
         """
-        return cls(flow, reduced(earlier), reduced(later), np.array_equal(earlier, later))
+        if np.array_equal(earlier.pixels, later.pixels):
+            return cls(FlowField.still(later.width, later.height), earlier, later, is_still=True)
+        return cls(flow.estimate(earlier, later), earlier, later)
 
     def follow(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Motion of points, each of which stands on what is in front.
@@ -56,6 +60,7 @@ class Passage:
         Deviation: no flow back is compared. It costs as much again, and at the same number of
             points marked wrongly it finds hardly more of what is covered.
         """
-        steps, misfits, closing = vote(points, self.flow, self.earlier, self.later)
+        pictures = self.earlier.reduced(LINES), self.later.reduced(LINES)
+        steps, misfits, closing = vote(points, self.flow, *pictures)
         trust = 1.0 / (1.0 + (misfits.astype(np.float64) / DOUBTFUL) ** 2)
         return steps, trust, (closing > CLOSING) & (misfits > LOST)

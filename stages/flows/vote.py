@@ -26,22 +26,6 @@ MOST_ROWS = 30000
 """Points that OpenCV samples in one call: it takes pictures of less than 32768 rows."""
 
 
-def reduced(picture: np.ndarray) -> np.ndarray:
-    """A picture as patches are compared: small and grey, for colours hardly change the vote.
-
-    Args:
-        picture: Shape [H, W, 3] uint8.
-
-    Returns:
-        Shape [h, w] uint8.
-    """
-    grey = cv2.cvtColor(picture, cv2.COLOR_RGB2GRAY)
-    height, width = grey.shape
-    scale = min(1.0, LINES / min(height, width))
-    size = (max(1, round(scale * width)), max(1, round(scale * height)))
-    return cv2.resize(grey, size, interpolation=cv2.INTER_AREA)
-
-
 def vote(
     points: np.ndarray, flow: FlowField, earlier: np.ndarray, later: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -50,8 +34,8 @@ def vote(
     Args:
         points: Positions in the earlier picture [px], shape [N, 2].
         flow: Motion from the earlier picture to the later one.
-        earlier: The earlier picture, `reduced`.
-        later: The later picture, `reduced`.
+        earlier: The earlier picture, grey, at most `LINES` on its short side, shape [h, w] uint8.
+        later: The later picture, of the same shape.
 
     Returns:
         Motion [px], shape [N, 2]; how badly the patch fits there: mean absolute difference [code

@@ -7,6 +7,7 @@ import numpy as np
 
 from stages.flows.dis import Dis
 from stages.flows.field import FlowField
+from stages.flows.view import View
 from stages.metrics.visible import visible
 from stages.metrics.warp import dense
 
@@ -31,8 +32,9 @@ class Motion:
             earlier: A frame of the source, shape [H, W, 3] uint8.
             later: A later one of the same shot and size.
         """
+        views = View(earlier), View(later)
         estimate = REFERENCE_FLOW.estimate
-        return cls(estimate(earlier, later), estimate(later, earlier))
+        return cls(estimate(*views), estimate(*views[::-1]))
 
     @cached_property
     def steps(self) -> np.ndarray:
