@@ -29,6 +29,10 @@ COLORED = wp.constant(10)
 """From ink (0) to pencils in the colours of the triangles (1)."""
 SEED = wp.constant(11)
 """Chooses the places on the tile."""
+OWN = wp.constant(12)
+"""1 where the paper of a triangle is its own colour, else 0."""
+CONTRAST = wp.constant(13)
+"""How dark strokes are there: 0 to 1."""
 
 # Prepared for a triangle: light of its pen, of its paper, then these.
 BEGIN = wp.constant(6)
@@ -46,6 +50,8 @@ RIGHT_OF_CORNER = wp.constant(11)
 BELOW_CORNER = wp.constant(12)
 """The same, down."""
 
+WHITE = wp.constant(255.0 * 255.0)
+"""The most light."""
 SHARPNESS = wp.constant(0.75)
 """Texels are about this part of an output pixel: at 1 lines lose more contrast than jaggedness,
 at 1/2 four times as many texels pass through the caches."""
@@ -65,6 +71,12 @@ class Coloring:
     """Light between them."""
     amount: float
     """Part of the paper that strokes cover."""
+
+
+@wp.func
+def white() -> wp.vec3f:
+    """Light of white."""
+    return wp.vec3f(WHITE, WHITE, WHITE)
 
 
 @wp.func
@@ -91,6 +103,21 @@ def in_ink(n: Numbers, color: wp.vec3f) -> Coloring:
 
 
 @wp.func
+def on_own_color(n: Numbers, color: wp.vec3f) -> Coloring:
+    """Strokes that multiply the triangle's colour; from afar it is seen unchanged.
+
+    What strokes take away the paper between them gets: both together are the triangle's light,
+    but for channels that are too bright to be raised.
+    """
+    coloring = in_ink(n, color)
+    light = to_light(color)
+    taken = wp.cw_mul(n[CONTRAST] * light, white() - coloring.pen) / WHITE
+    coloring.paper = wp.min(light + coloring.amount * taken, white())
+    coloring.pen = wp.max(coloring.paper - taken, wp.vec3f())
+    return coloring
+
+
+@wp.func
 def in_pencil(n: Numbers, color: wp.vec3f) -> Coloring:
     """A pencil for each triangle, such that from afar its colour is seen, on tinted paper."""
     light = to_light(color)
@@ -111,6 +138,8 @@ def in_pencil(n: Numbers, color: wp.vec3f) -> Coloring:
 def coloring_of(n: Numbers, color: wp.vec3f) -> Coloring:
     """Between ink and coloured pencils."""
     coloring = in_ink(n, color)
+    if n[OWN] > 0.0:
+        coloring = on_own_color(n, color)
     if n[COLORED] > 0.0:
         pencil = in_pencil(n, color)
         coloring.pen = wp.lerp(coloring.pen, pencil.pen, n[COLORED])
