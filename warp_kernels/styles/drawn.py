@@ -26,8 +26,9 @@ class Drawn(Style):
     """Strokes of a pen or a pencil, denser where the picture is darker.
 
     Each triangle is a paper of its own colour that the strokes darken, as in the paper's Fig. 1,
-    left; or all are one sheet, or there is none and strokes darken what lies below. They lie in the plane of the picture, so all of them have one width, and they are fixed to the
-    centre and the base edge of their triangle: they move with it and in no other way.
+    left; or all are one sheet, or there is none and strokes darken what lies below. They lie in the
+    plane of the picture, so all of them have one width, and they are fixed to the centre and the
+    base edge of their triangle: they move with it and in no other way.
 
     Source: Lawonn & Guenther, Stylized Image Triangulation (2018), Sec. 5; Praun et al., Real-time
         hatching (2001), Sec. 5: blending between tones.
