@@ -54,7 +54,7 @@ def parse_region(flag: str, text: str, styles: Mapping[str, type]) -> Region:
 
     Args:
         flag: The option, for messages, such as `--region`.
-        text: `MASK:STYLE`; the name of the mask may hold colons.
+        text: `MASK:STYLE` or `MASK@FRAME:STYLE`; the name of the mask may hold colons.
         styles: Styles by name.
 
     Raises:
@@ -65,11 +65,20 @@ def parse_region(flag: str, text: str, styles: Mapping[str, type]) -> Region:
     for number in range(1, len(parts)):
         if parts[number] in styles:
             style = parse_member(flag, ":".join(parts[number:]), styles)
-            return Region(":".join(parts[:number]), style)
+            mask, frame = _mask_and_frame(":".join(parts[:number]))
+            return Region(mask, style, frame)
     raise OptionError(
-        f"{flag} {text}: write MASK:STYLE, such as mask.png:hatching; styles are "
-        f"{', '.join(styles)}"
+        f"{flag} {text}: write MASK:STYLE, such as mask.png:hatching, or MASK@FRAME:STYLE; styles "
+        f"are {', '.join(styles)}"
     )
+
+
+def _mask_and_frame(text: str) -> tuple[str, int | None]:
+    """A mask and the frame that it was drawn for, unless the whole is the name of a file."""
+    mask, _, frame = text.rpartition("@")
+    if mask and frame.isascii() and frame.isdigit() and not Path(text).exists():
+        return mask, int(frame)
+    return text, None
 
 
 def _parameters(cls: type) -> dict[str, Any]:

@@ -22,6 +22,15 @@ class Region:
     """A still, a video or numbered stills of the source's size: white where the style is."""
     style: Style = field(metadata={"registry": "warp_kernels.styles:STYLES"})
     """The style."""
+    frame: int | None = None
+    """Number of the frame for which the mask was drawn: the triangles that it shows carry the
+    style through their shot. None if the mask stays where it is."""
+
+    @property
+    def drawn_for(self) -> int:
+        """The frame of a region that is followed."""
+        assert self.frame is not None
+        return self.frame
 
 
 class Mask:
