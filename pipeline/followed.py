@@ -118,9 +118,9 @@ def _carried(track: TrackReader, frames: list[int], members: np.ndarray) -> dict
     carried = {}
     before = None
     for frame in frames:
-        mesh = track.snapshot(frame).mesh
+        snapshot = track.snapshot(frame)
         if before is not None:
-            members = inherited(before, mesh, members[:, None])[:, 0]
+            members = inherited(before, snapshot, members[:, None])[:, 0]
         carried[frame] = members
-        before = mesh
+        before = snapshot
     return carried

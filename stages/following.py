@@ -6,9 +6,12 @@ from stages.correspond import kept_triangles
 from stages.earlier import earlier_vertices
 from stages.mesh import Mesh
 from stages.overlaps import overlaps
+from stages.snapshot import Snapshot, colors_at_centres
 
 PARTS = 8
 """A triangle is looked at in the middle of so many times so many equal parts."""
+ALIKE = 40.0
+"""Colours that are so far apart count a quarter of equal ones [code values]."""
 HALF = 127.5
 """A mask is white above this [code value]."""
 
@@ -30,37 +33,66 @@ def under_mask(mesh: Mesh, mask: np.ndarray) -> np.ndarray:
     return (mask[rows, columns] > HALF).mean(axis=1) > 0.5
 
 
-def inherited(before: Mesh, mesh: Mesh, members: np.ndarray) -> np.ndarray:
+def inherited(before: Snapshot, after: Snapshot, members: np.ndarray) -> np.ndarray:
     """Carry regions on to a neighbouring frame of a shot, the next one or the one before.
 
-    Triangles that both have keep what they were. A new one belongs where most of it lay.
+    Triangles that both have keep what they were. About a new one those vote that lay where it
+    lies and those beside it, by the share of it that they cover or touch, and the more the more
+    alike they look: where a shape uncovers what is behind it that is not taken for the shape.
 
     Args:
-        before: The mesh whose triangles are known.
-        mesh: The mesh of the neighbouring frame.
+        before: The frame whose triangles are known.
+        after: The neighbouring frame.
         members: Whether the triangles of `before` belong to each region, [T, R] bool.
 
     Returns:
-        The same of `mesh`; `members` itself if no triangle came or went.
+        The same of `after`; `members` itself if no triangle came or went.
     """
-    kept = kept_triangles(before, mesh)
-    if np.array_equal(kept, np.arange(before.triangle_count)):
+    mesh = after.mesh
+    kept = kept_triangles(before.mesh, mesh)
+    if np.array_equal(kept, np.arange(before.mesh.triangle_count)):
         return members
     born = np.flatnonzero(kept < 0)
+    colors = [colors_at_centres(s.mesh, s.model, s.coefficients) for s in (before, after)]
+    votes = np.zeros((len(born), members.shape[1]))
+    for voters in (_beneath(before.mesh, mesh, born), _beside(mesh, kept, born)):
+        owners, others, shares = voters
+        away = np.square(colors[1][born[owners]] - colors[0][others]).sum(axis=1)
+        weights = shares / np.square(1.0 + away / ALIKE**2)
+        np.add.at(votes, owners, weights[:, None] * np.where(members[others], 1.0, -1.0))
     found = members[kept]
-    found[born] = _most(before, earlier_vertices(before, mesh)[mesh.triangles[born]], members)
+    found[born] = votes > 0.0
     return found
 
 
-def _most(before: Mesh, corners: np.ndarray, members: np.ndarray) -> np.ndarray:
-    """What most of some triangles [N, 3, 2] belongs to, [N, R]."""
+Voters = tuple[np.ndarray, np.ndarray, np.ndarray]
+"""Places among new triangles, numbers of known ones that vote about them, and their shares; [N]."""
+
+
+def _beneath(before: Mesh, mesh: Mesh, born: np.ndarray) -> Voters:
+    """The triangles that lay where new ones lie, by the part of these that they cover."""
+    corners = earlier_vertices(before, mesh)[mesh.triangles[born]]
     known = before.vertices[before.triangles]
     spans, links = overlaps(corners, known)
     owners = np.repeat(np.arange(len(corners)), spans[:, 1] - spans[:, 0])
-    parts = _inside(_points(corners)[owners], known[links]).sum(axis=1)
-    votes = np.zeros((len(corners), members.shape[1]))
-    np.add.at(votes, owners, parts[:, None] * np.where(members[links], 1, -1))
-    return votes > 0
+    return owners, links, _inside(_points(corners)[owners], known[links]).mean(axis=1)
+
+
+def _beside(mesh: Mesh, kept: np.ndarray, born: np.ndarray) -> Voters:
+    """The known triangles beside new ones, by the part of their outline that they touch.
+
+    Args:
+        mesh: The new ones' mesh.
+        kept: Numbers of its triangles in the mesh before, or -1, [T].
+        born: Numbers of the new ones, [N].
+    """
+    twins = mesh.twins.reshape(-1, 3)[born]
+    sides = mesh.vertices[mesh.triangles[born]]
+    lengths = np.linalg.norm(np.roll(sides, -1, axis=1) - sides, axis=2)
+    shares = lengths / lengths.sum(axis=1, keepdims=True)
+    others = np.where(twins >= 0, kept[twins // 3], -1)
+    owners, corners = np.nonzero(others >= 0)
+    return owners, others[owners, corners], shares[owners, corners]
 
 
 def _points(corners: np.ndarray) -> np.ndarray:

@@ -11,11 +11,11 @@ from pipeline.cli import main
 from pipeline.member_spec import parse_region
 from pipeline.track import TrackReader
 from stages.correspond import kept_triangles
-from stages.edits import split_triangles
+from stages.edits import flip_edges, split_triangles
 from stages.following import inherited, under_mask
 from stages.render import Renderer
 from tests.golden_images import write_png
-from tests.meshes import HEIGHT, WIDTH, random_mesh
+from tests.meshes import HEIGHT, WIDTH, random_mesh, two_triangles
 from tests.snapshots import restless_shot, snapshot_with
 from tests.tracks import COUNT, CUT, write_clip
 from warp_kernels.device import Device
@@ -72,14 +72,14 @@ def test_mask_chooses_the_triangles_that_it_shows(device: str) -> None:
 
 def test_what_persists_keeps_its_regions_and_what_is_new_inherits() -> None:
     """Over frames that flip, split and collapse, forwards and backwards; all of it stays all."""
-    meshes = [snapshot.mesh for snapshot in restless_shot(random_mesh(5), 8)]
-    for shot in (meshes, meshes[::-1]):
-        count = shot[0].triangle_count
+    forwards = restless_shot(random_mesh(5), 8)
+    for shot in (forwards, forwards[::-1]):
+        count = shot[0].mesh.triangle_count
         members = np.stack([np.arange(count) % 3 == 0, np.full(count, True), np.zeros(count)], 1)
         members = members.astype(bool)
-        for before, mesh in pairwise(shot):
-            found = inherited(before, mesh, members)
-            kept = kept_triangles(before, mesh)
+        for before, after in pairwise(shot):
+            found = inherited(before, after, members)
+            kept = kept_triangles(before.mesh, after.mesh)
             np.testing.assert_array_equal(found[kept >= 0], members[kept[kept >= 0]])
             assert (kept < 0).any()
             assert found[:, 1].all()
@@ -91,13 +91,32 @@ def test_what_persists_keeps_its_regions_and_what_is_new_inherits() -> None:
 def test_parts_of_a_member_are_members() -> None:
     """A split hands all of it on; where nothing comes or goes nothing is worked out."""
     mesh = random_mesh(2)
-    members = np.random.default_rng(1).random((mesh.triangle_count, 2)) < 0.5
-    assert inherited(mesh, mesh.moved(mesh.vertices.copy()), members) is members
+    rng = np.random.default_rng(1)
+    members = rng.random((mesh.triangle_count, 2)) < 0.5
+    colors = rng.integers(0, 256, (mesh.triangle_count, 3))
+    before = snapshot_with(mesh, colors)
+    after = snapshot_with(mesh.moved(mesh.vertices.copy()), colors[::-1])
+    assert inherited(before, after, members) is members
     chosen = np.arange(0, mesh.triangle_count, 4)
     split = split_triangles(mesh, chosen)
     parents = np.arange(split.triangle_count)
     parents[mesh.triangle_count :] = np.tile(chosen, 2)
-    np.testing.assert_array_equal(inherited(mesh, split, members), members[parents])
+    after = snapshot_with(split, colors[parents])
+    np.testing.assert_array_equal(inherited(before, after, members), members[parents])
+
+
+def test_what_was_hidden_is_not_taken_for_what_hid_it() -> None:
+    """A new triangle belongs to what it looks like, if that lies beneath or beside it."""
+    mesh = two_triangles()
+    members = np.array([[True], [False]])
+    before = snapshot_with(mesh, [(200, 0, 0), (0, 0, 90)])
+    flipped = flip_edges(mesh, np.flatnonzero(mesh.twins >= 0)[:1])
+    for colors, wanted in (
+        ([(190, 9, 0), (0, 0, 99)], [True, False]),
+        ([(200, 0, 9), (210, 0, 0)], [True, True]),
+    ):
+        found = inherited(before, snapshot_with(flipped, colors), members)
+        assert found[:, 0].tolist() == wanted
 
 
 def test_style_is_drawn_on_these_triangles_alone(clip: Path, track: Path, tmp_path: Path) -> None:
@@ -105,15 +124,17 @@ def test_style_is_drawn_on_these_triangles_alone(clip: Path, track: Path, tmp_pa
     found = frames("render", track, tmp_path / "found", *region(clip, 2))
     plain = frames("render", track, tmp_path / "plain")
     with TrackReader(track) as reader:
-        meshes = [reader.snapshot(frame).mesh for frame in range(CUT)]
-    members = {2: under_mask(meshes[2], cv2.imread(str(clip.with_name("mask.png")))[..., 0])}
+        shot = [reader.snapshot(frame) for frame in range(CUT)]
+    members = {2: under_mask(shot[2].mesh, cv2.imread(str(clip.with_name("mask.png")))[..., 0])}
     for frame in (3, 4, 5, 1, 0):
         source = frame - 1 if frame > 2 else frame + 1
-        members[frame] = inherited(meshes[source], meshes[frame], members[source][:, None])[:, 0]
+        members[frame] = inherited(shot[source], shot[frame], members[source][:, None])[:, 0]
     renderer = Renderer(Device("cpu"), SHAPE, SHAPE, (Flat(),))
-    for frame, mesh in enumerate(meshes):
+    for frame, snapshot in enumerate(shot):
         shown, before = decoded(found[frame]), decoded(plain[frame])
-        mask = renderer.render(snapshot_with(mesh, np.repeat(255 * members[frame], 3)))[..., 0]
+        mask = renderer.render(snapshot_with(snapshot.mesh, np.repeat(255 * members[frame], 3)))[
+            ..., 0
+        ]
         assert (shown[mask == 255] == (255, 0, 0)).all()
         np.testing.assert_array_equal(shown[mask == 0], before[mask == 0])
         assert 0.2 < (mask == 255).mean() < 0.8
@@ -137,11 +158,11 @@ def test_part_is_that_of_the_whole(style: str, clip: Path, track: Path, tmp_path
         assert part == {name: whole[name] for name in part}
 
 
-@pytest.mark.parametrize("flags", [(), ("--jobs", "2"), ("--track", "kept.mtrk")])
+@pytest.mark.parametrize("flags", [(), ("--track", "kept.mtrk")])
 def test_animate_draws_what_render_draws(
     flags: tuple[str, ...], clip: Path, track: Path, tmp_path: Path, monkeypatch
 ) -> None:
-    """Also before the mask's frame, in one process or two, and after an interruption."""
+    """Also before the mask's frame, and after an interruption."""
     monkeypatch.chdir(tmp_path)
     look = region(clip, 4)
     wanted = frames("render", track, tmp_path / "a", *look)
