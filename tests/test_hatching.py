@@ -143,6 +143,19 @@ def test_strokes_follow_the_base_edge(first_id: int, device: str) -> None:
         assert abs((angle - side + 90) % 180 - 90) < 3.0
 
 
+@pytest.mark.parametrize("first_id", [0, 1, 2, 3])
+def test_strokes_run_along_needles(first_id: int, device: str) -> None:
+    """Whichever of its sides is the base: across it they would be a row of ticks."""
+    points = np.array([[0, 0], [WIDTH, 0], [WIDTH, 40], [0, 40]], dtype=float)
+    mesh = mesh_of(points, [[0, 1, 2], [0, 2, 3]], WIDTH, 40)
+    mesh = replace(mesh, triangle_ids=first_id + np.arange(2))
+    for _ in range(3):
+        pixels = draw(mesh, 140, device, Hatching(spacing=6.0, **PEN), 2.0)
+        angle = direction(pixels[4:24, 200:440])
+        assert abs((angle + 90) % 180 - 90) < 12.0
+        mesh = turn_base_edge(mesh, np.array([0, 1]))
+
+
 def test_angle_turns_the_strokes(device: str) -> None:
     """From the base edge, clockwise on the screen."""
     styles = (Hatching(spacing=6.0, angle=angle, **PEN) for angle in (0.0, 25.0))

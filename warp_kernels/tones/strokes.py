@@ -55,6 +55,11 @@ WHITE = wp.constant(255.0 * 255.0)
 SHARPNESS = wp.constant(0.75)
 """Texels are about this part of an output pixel: at 1 lines lose more contrast than jaggedness,
 at 1/2 four times as many texels pass through the caches."""
+NEEDLE = wp.constant(0.3)
+"""Triangles with a side that is shorter than this part of the next one are needles."""
+BRIGHTEST = wp.constant(5.0)
+"""Light of the paper beside coloured pencils, at most, relative to that of the triangle: brighter
+slivers would sparkle in dark triangles."""
 TINT = wp.constant(0.5)
 """How much of a triangle's colour lies under the strokes of coloured pencils."""
 SATURATION = wp.constant(0.3)
@@ -122,9 +127,8 @@ def in_pencil(n: Numbers, color: wp.vec3f) -> Coloring:
     """A pencil for each triangle, such that from afar its colour is seen, on tinted paper."""
     light = to_light(color)
     tinted = wp.lerp(three(n, PAPER), light, TINT)
-    # beside the blackest strokes slivers of bright paper would still make dark triangles grey
-    brightest = brightness_of(light) * wp.static(1.0 / (1.0 - DARKEST))
     coloring = Coloring()
+    brightest = BRIGHTEST * brightness_of(light)
     coloring.paper = wp.min(1.0, brightest / wp.max(brightness_of(tinted), 1.0)) * tinted
     kept = wp.cw_div(light, wp.max(coloring.paper, wp.vec3f(1.0, 1.0, 1.0)))
     least = 1.0 - wp.min(wp.min(kept[0], kept[1]), wp.min(kept[2], 1.0))
@@ -149,18 +153,30 @@ def coloring_of(n: Numbers, color: wp.vec3f) -> Coloring:
 
 
 @wp.func
+def side_of(scene: Scene, triangle: int, corner: int) -> wp.vec2f:
+    """The side that begins at a corner; 3 is corner 0 again."""
+    side = scene.sides[triangle, 0]
+    if corner == 1:
+        side = scene.sides[triangle, 1] - scene.sides[triangle, 0]
+    if corner == 2:
+        side = -scene.sides[triangle, 1]
+    return side
+
+
+@wp.func
 def base_edge(scene: Scene, triangle: int) -> wp.vec2f:
     """Unit vector along the edge that strokes follow, chosen by chance but for ever.
 
     Source: Lawonn & Guenther, Stylized Image Triangulation (2018), Sec. 5: randomly chosen; Sec.
         3.5: users turn it, which turns the row of corners here.
+    Deviation: never the short side of a needle, along which strokes would be a row of ticks that
+        turn with every step of its ends; the next side is taken instead.
     """
-    edge = scene.sides[triangle, 0]
-    choice = (scene.hashes[triangle] >> wp.uint32(24)) % wp.uint32(3)
-    if choice == wp.uint32(1):
-        edge = scene.sides[triangle, 1] - scene.sides[triangle, 0]
-    if choice == wp.uint32(2):
-        edge = -scene.sides[triangle, 1]
+    choice = int((scene.hashes[triangle] >> wp.uint32(24)) % wp.uint32(3))
+    edge = side_of(scene, triangle, choice)
+    other = side_of(scene, triangle, choice + 1)
+    if wp.length(edge) < NEEDLE * wp.length(other):
+        edge = other
     return edge / wp.max(wp.length(edge), 1.0e-6)
 
 
