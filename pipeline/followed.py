@@ -62,53 +62,65 @@ def check_followed(job: Job, info: MediaInfo) -> None:
     wanted = job.frame_range
     for region in job.followed:
         _check_dependent(region, job)
-        frame = region.drawn_for
-        is_there = wanted.first <= frame <= (frame if wanted.last is None else wanted.last)
-        is_there &= wanted.is_in_step(frame)
-        is_there &= info.frame_count is None or frame < info.frame_count
-        if not (is_there or goes_on):
-            raise OptionError(
-                f"--region {region.mask}@{frame}: the frames {wanted} have no frame {frame}; draw "
-                "the mask for one of them, or solve more frames and render a part of the track"
-            )
+        for frame in region.frames:
+            is_there = wanted.first <= frame <= (frame if wanted.last is None else wanted.last)
+            is_there &= wanted.is_in_step(frame)
+            is_there &= info.frame_count is None or frame < info.frame_count
+            if not (is_there or goes_on):
+                raise OptionError(
+                    f"--region {region.mask}@{frame}: the frames {wanted} have no frame {frame}; "
+                    "draw the mask for one of them, or solve more and render a part of the track"
+                )
 
 
 def _check_dependent(region: Region, job: Job) -> None:
     if job.independent:
         raise OptionError(
-            f"--region {region.mask}@{region.frame}: with --independent no triangle outlives its "
-            "frame; give masks for all frames, without @"
+            f"--region {region.mask}@{region.frames[0]}: with --independent no triangle outlives "
+            "its frame; give masks for all frames, without @"
         )
 
 
 def _members(
     region: Region, job: Job, track: TrackReader, rows: Sequence[FrameRow]
 ) -> dict[int, np.ndarray]:
-    """The triangles of a region in the frames of its shot, by frame."""
+    """The triangles of a region, by frame: what is carried there from the nearest of its own."""
     _check_dependent(region, job)
     frames = [row.frame for row in track.rows]
-    own = region.drawn_for
-    if own not in frames:
-        raise OptionError(
-            f"--region {region.mask}@{own}: {track.path} has no frame {own}, it has frames "
-            f"{frames[0]} to {frames[-1]}; draw the mask for one of them"
-        )
-    start = frames.index(own)
-    shot = track.rows[start].shot
-    wanted = [frames.index(row.frame) for row in rows if row.shot == shot]
-    if not wanted:
-        return {}
-    found = _under(region, track)
-    onward, back = frames[start : max(wanted) + 1], frames[min(wanted) : start + 1]
-    return _carried(track, onward, found) | _carried(track, back[::-1], found)
+    members: dict[int, np.ndarray] = {}
+    for own, asked in _turns(region, track, rows).items():
+        start, first, last = (frames.index(frame) for frame in (own, min(asked), max(asked)))
+        onward, back = frames[start : last + 1], frames[first : start + 1]
+        found = _under(region, track, own)
+        carried = _carried(track, onward, found) | _carried(track, back[::-1], found)
+        members |= {frame: carried[frame] for frame in asked}
+    return members
 
 
-def _under(region: Region, track: TrackReader) -> np.ndarray:
-    """The triangles under the mask of a region, in its frame."""
-    mesh = track.snapshot(region.drawn_for).mesh
-    mask = Mask(region.mask, (mesh.width, mesh.height))
+def _turns(region: Region, track: TrackReader, rows: Sequence[FrameRow]) -> dict[int, list[int]]:
+    """The frames for which each of a region's own is the nearest of the shot, the first of two."""
+    shots = {row.frame: row.shot for row in track.rows}
+    for frame in region.frames:
+        if frame not in shots:
+            raise OptionError(
+                f"--region {region.mask}@{frame}: {track.path} has no frame {frame}, it has frames "
+                f"{track.rows[0].frame} to {track.rows[-1].frame}; draw the mask for one of them"
+            )
+    turns: dict[int, list[int]] = {}
+    for row in rows:
+        own = [frame for frame in region.frames if shots[frame] == row.shot]
+        if own:
+            away = [abs(frame - row.frame) for frame in own]
+            turns.setdefault(own[away.index(min(away))], []).append(row.frame)
+    return turns
+
+
+def _under(region: Region, track: TrackReader, frame: int) -> np.ndarray:
+    """The triangles under the mask of a region, in one of its frames."""
+    mesh = track.snapshot(frame).mesh
+    mask = Mask(region.mask, (mesh.width, mesh.height), is_single=True)
     try:
-        return under_mask(mesh, mask.at(region.drawn_for))
+        return under_mask(mesh, mask.at(frame))
     finally:
         mask.close()
 

@@ -106,7 +106,7 @@ class Job:
         metadata={
             "help": "a style inside of a mask, over the others, repeatable: a still, numbered "
             "stills or a video of the source's size, white where the style is drawn; "
-            "MASK@FRAME:STYLE follows what it shows in that frame through the shot",
+            "MASK@FRAME,FRAME,...:STYLE follows what it shows in these frames through their shots",
             "metavar": "MASK[@FRAME]:STYLE",
             "flag": "region",
             "group": "look",
@@ -232,7 +232,7 @@ class Job:
     @property
     def followed(self) -> tuple[Region, ...]:
         """Regions that stay with their triangles."""
-        return tuple(region for region in self.regions if region.frame is not None)
+        return tuple(region for region in self.regions if region.frames)
 
     @property
     def _all_styles(self) -> tuple[Style, ...]:

@@ -141,6 +141,26 @@ def test_style_is_drawn_on_these_triangles_alone(clip: Path, track: Path, tmp_pa
     assert {f: found[f] for f in range(CUT, COUNT)} == {f: plain[f] for f in range(CUT, COUNT)}
 
 
+def test_masks_of_several_frames_take_turns(clip: Path, track: Path, tmp_path: Path) -> None:
+    """Each frame shows what is carried there from the nearest of its shot, the earlier of two."""
+    for frame in (1, 5, 8):
+        mask = np.zeros((SHAPE[1], SHAPE[0], 3), np.uint8)
+        mask[:, : 12 * frame] = 255
+        write_png(tmp_path / f"m_{frame}.png", mask)
+    name = str(tmp_path / "m_#.png")
+    alone = {
+        key: frames("render", track, tmp_path / str(key), "--region", f"{name}@{key}:{RED}")
+        for key in (1, 5, 8)
+    }
+    found = frames("render", track, tmp_path / "all", "--region", f"{name}@8,5,1:{RED}")
+    for frame, picture in found.items():
+        assert picture == alone[1 if frame <= 3 else 5 if frame < CUT else 8][frame]
+    part = frames(
+        "render", track, tmp_path / "p", "--frames", "4-7", "--region", f"{name}@8,5,1:{RED}"
+    )
+    assert part == {frame: found[frame] for frame in part}
+
+
 def decoded(png: bytes) -> np.ndarray:
     """Pixels of a file, RGB."""
     return cv2.imdecode(np.frombuffer(png, np.uint8), cv2.IMREAD_COLOR)[..., ::-1]
@@ -179,10 +199,11 @@ def test_name_of_a_mask_may_hold_the_sign(tmp_path: Path) -> None:
     """A file that is there is a mask that stays, whatever its name."""
     there = tmp_path / "m@3"
     there.write_bytes(b"")
-    assert parse_region("--region", f"{there}:flat", STYLES).frame is None
-    assert parse_region("--region", f"{there}@5:flat", STYLES).frame == 5
+    assert parse_region("--region", f"{there}:flat", STYLES).frames == ()
+    assert parse_region("--region", f"{there}@5:flat", STYLES).frames == (5,)
     assert parse_region("--region", f"{there}@5:flat", STYLES).mask == str(there)
     assert parse_region("--region", "a@b.png:flat", STYLES).mask == "a@b.png"
+    assert parse_region("--region", "a@9,2:flat", STYLES).frames == (2, 9)
 
 
 @pytest.mark.parametrize(
