@@ -153,8 +153,8 @@ def coloring_of(n: Numbers, color: wp.vec3f) -> Coloring:
 
 
 @wp.func
-def side_of(scene: Scene, triangle: int, corner: int) -> wp.vec2f:
-    """The side that begins at a corner; 3 is corner 0 again."""
+def edge_from(scene: Scene, triangle: int, corner: int) -> wp.vec2f:
+    """The edge to the next corner from a corner; 3 is corner 0 again."""
     side = scene.sides[triangle, 0]
     if corner == 1:
         side = scene.sides[triangle, 1] - scene.sides[triangle, 0]
@@ -173,8 +173,8 @@ def base_edge(scene: Scene, triangle: int) -> wp.vec2f:
         turn with every step of its ends; the next side is taken instead.
     """
     choice = int((scene.hashes[triangle] >> wp.uint32(24)) % wp.uint32(3))
-    edge = side_of(scene, triangle, choice)
-    other = side_of(scene, triangle, choice + 1)
+    edge = edge_from(scene, triangle, choice)
+    other = edge_from(scene, triangle, choice + 1)
     if wp.length(edge) < NEEDLE * wp.length(other):
         edge = other
     return edge / wp.max(wp.length(edge), 1.0e-6)
