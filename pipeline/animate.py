@@ -13,6 +13,7 @@ from time import perf_counter
 import numpy as np
 
 from pipeline.drawing import Drawing, check_drawing
+from pipeline.followed import followed_shares
 from pipeline.job import Job
 from pipeline.past import Past, open_track, past_of
 from pipeline.progress import Progress
@@ -68,7 +69,7 @@ class Solved:
 
 
 def animate(job: Job, progress: Progress) -> Animated:
-    """Convert a source.
+    """Convert a source; one whose regions are to be followed needs `animate_in_parts`.
 
     Nothing is written under the output's name unless the whole job succeeds; a track that the
     job writes beside it keeps every frame that was solved.
@@ -126,9 +127,10 @@ def render(job: Job, track: TrackReader, info: MediaInfo, progress: Progress) ->
     drawing = Drawing(job, info, device)
     with drawing, Behind(drawing.draw, SOLVED_BEHIND) as writer:
         fitted, sources = _fitted(track, rows, job, device), source_pictures(job, rows)
-        for snapshot, row, source in zip(fitted, rows, sources, strict=True):
+        shares = followed_shares(job, track, rows)
+        for snapshot, row, source, share in zip(fitted, rows, sources, shares, strict=True):
             is_shown = shown[0].frame <= row.frame <= shown[-1].frame
-            writer.put(Take(snapshot, row.shot, is_shown, source))
+            writer.put(Take(snapshot, row.shot, is_shown, source, share))
             if is_shown:
                 tally.add(row.triangle_count, snapshot.rmse)
     return tally.result(begun, (), drawing.notes)

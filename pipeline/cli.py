@@ -64,7 +64,7 @@ def run_animate(arguments: argparse.Namespace) -> None:
     """
     job = _job(arguments)
     with _progress(arguments) as progress:
-        if job.jobs > 1:
+        if job.jobs > 1 or job.followed:
             from pipeline.parts import animate_in_parts
 
             _tell(progress, animate_in_parts(job, progress), job.output)

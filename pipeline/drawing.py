@@ -30,8 +30,10 @@ class Drawing:
         picture = (info.width, info.height)
         size = job.size_for(picture)
         masked = tuple(region.style for region in job.regions)
-        self._renderer = Renderer(device, picture, size, job.shown_styles, masked)
-        self._masks = open_masks(job.regions, picture)
+        followed = tuple(i for i, region in enumerate(job.regions) if region in job.followed)
+        self._renderer = Renderer(device, picture, size, job.shown_styles, masked, followed)
+        still = [region for region in job.regions if region not in job.followed]
+        self._masks = open_masks(still, picture)
         self._encoder = open_encoder(job.output, info, size, job.encode, job.frame_range)
         # Where every frame starts anew, triangles of the same number have nothing in common.
         self._blend = 0 if job.independent else job.blend
@@ -52,14 +54,14 @@ class Drawing:
     def _draw(self, take: Take) -> None:
         if self._blend:
             if self._fading is None or take.shot != self._shot:
-                self._fading = Fading.begin(take.snapshot, self._blend)
+                self._fading = Fading.begin(take.snapshot, self._blend, take.shares)
             else:
-                self._fading = self._fading.followed_by(take.snapshot)
+                self._fading = self._fading.followed_by(take.snapshot, take.shares)
             self._shot = take.shot
         if take.is_shown:
             snapshot = take.snapshot
             masks = [mask.at(snapshot.frame_index) for mask in self._masks]
-            pixels = self._renderer.render(snapshot, self._fading, take.source, masks)
+            pixels = self._renderer.render(snapshot, self._fading, take.source, masks, take.shares)
             self._encoder.write(pixels, snapshot.pts, snapshot.time_base, snapshot.frame_index)
 
     def __enter__(self) -> "Drawing":

@@ -105,8 +105,9 @@ class Job:
         default=(),
         metadata={
             "help": "a style inside of a mask, over the others, repeatable: a still, numbered "
-            "stills or a video of the source's size, white where the style is drawn",
-            "metavar": "MASK:STYLE",
+            "stills or a video of the source's size, white where the style is drawn; "
+            "MASK@FRAME,FRAME,...:STYLE follows what it shows in these frames through their shots",
+            "metavar": "MASK[@FRAME]:STYLE",
             "flag": "region",
             "group": "look",
         },
@@ -227,6 +228,11 @@ class Job:
     def needs_source(self) -> bool:
         """Whether a look shows the source picture."""
         return any(style.needs_source for style in self._all_styles)
+
+    @property
+    def followed(self) -> tuple[Region, ...]:
+        """Regions that stay with their triangles."""
+        return tuple(region for region in self.regions if region.frames)
 
     @property
     def _all_styles(self) -> tuple[Style, ...]:

@@ -1,6 +1,7 @@
 """Members of a registry as users write them: `edges:width=1.5,color=#222`, `importance:MAP.png`."""
 
 import math
+import re
 import types
 import typing
 from collections.abc import Mapping
@@ -14,6 +15,7 @@ from stages.gray import read_gray
 from stages.regions import Region
 from warp_kernels.errors import OptionError
 
+_FRAMES = re.compile(r"[0-9]+(,[0-9]+)*")
 _SWITCHES = {"true": True, "yes": True, "1": True, "false": False, "no": False, "0": False}
 
 
@@ -54,7 +56,7 @@ def parse_region(flag: str, text: str, styles: Mapping[str, type]) -> Region:
 
     Args:
         flag: The option, for messages, such as `--region`.
-        text: `MASK:STYLE`; the name of the mask may hold colons.
+        text: `MASK:STYLE` or `MASK@FRAME,FRAME,...:STYLE`; the name of the mask may hold colons.
         styles: Styles by name.
 
     Raises:
@@ -65,11 +67,20 @@ def parse_region(flag: str, text: str, styles: Mapping[str, type]) -> Region:
     for number in range(1, len(parts)):
         if parts[number] in styles:
             style = parse_member(flag, ":".join(parts[number:]), styles)
-            return Region(":".join(parts[:number]), style)
+            mask, frames = _mask_and_frames(":".join(parts[:number]))
+            return Region(mask, style, frames)
     raise OptionError(
-        f"{flag} {text}: write MASK:STYLE, such as mask.png:hatching; styles are "
-        f"{', '.join(styles)}"
+        f"{flag} {text}: write MASK:STYLE, such as mask.png:hatching, or MASK@FRAME:STYLE; styles "
+        f"are {', '.join(styles)}"
     )
+
+
+def _mask_and_frames(text: str) -> tuple[str, tuple[int, ...]]:
+    """A mask and the frames that it was drawn for, unless the whole is the name of a file."""
+    mask, _, frames = text.rpartition("@")
+    if mask and _FRAMES.fullmatch(frames) and not Path(text).exists():
+        return mask, tuple(sorted({int(frame) for frame in frames.split(",")}))
+    return text, ()
 
 
 def _parameters(cls: type) -> dict[str, Any]:

@@ -17,6 +17,7 @@ import numpy as np
 
 from pipeline.animate import Animated, render, solve
 from pipeline.drawing import check_drawing
+from pipeline.followed import check_followed
 from pipeline.job import Job
 from pipeline.past import check_track_place
 from pipeline.plan import plan
@@ -48,6 +49,8 @@ class PartError(TrimotionError):
 def animate_in_parts(job: Job, progress: Progress) -> Animated:
     """Solve shots side by side, then draw them.
 
+    Also in one process where regions are followed: they reach back to frames before their mask's.
+
     Args:
         job: What to do.
         progress: Told of the whole: a frame is half done when it is solved, and done when drawn.
@@ -57,7 +60,9 @@ def animate_in_parts(job: Job, progress: Progress) -> Animated:
     """
     begun = perf_counter()
     both = _Halves(progress)
-    check_drawing(job, probe(job.source))
+    info = probe(job.source)
+    check_drawing(job, info)
+    check_followed(job, info)
     if job.track is None and job.resume:
         raise OptionError("--resume: nothing is left to go on with; name a --track FILE.mtrk")
     track = job.track or PendingFile(job.output).path.with_suffix(ENDING)
@@ -93,8 +98,8 @@ def solve_in_parts(job: Job, progress: Progress) -> Animated:
     begun = perf_counter()
     check_track_place(job.track, job)
     alone = replace(job, jobs=1)
-    if job.resume and job.track.exists():
-        return solve(alone, progress)  # it goes on inside a shot
+    if job.jobs == 1 or (job.resume and job.track.exists()):
+        return solve(alone, progress)  # what is resumed goes on inside a shot
     ranges = plan(job).ranges
     if len(ranges) == 1:
         return solve(alone, progress)

@@ -26,7 +26,7 @@ from warp_kernels.device import Device
 from warp_kernels.errors import OptionError
 from warp_kernels.styles import STYLES
 
-COLUMNS = 5
+COLUMNS = 4
 """Portraits in a row."""
 WIDTH = 360
 """Width of a portrait [px]."""

@@ -19,3 +19,5 @@ class Take:
     """Whether it is part of the output, or only there for those around it."""
     source: np.ndarray | None = None
     """The picture that it was made from [code values], [H, W, 3]; None unless a look needs it."""
+    shares: np.ndarray | None = None
+    """Which followed regions its triangles belong to, see `Paint`, [T, R]; None for R = 0."""

@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from stages.advect import sliding
-from stages.correspond import by_vertex_id, kept_triangles, kept_vertices
+from stages.correspond import by_vertex_id, kept_triangles
+from stages.earlier import earlier_vertices
 from stages.mesh import Mesh
 from stages.overlaps import overlaps
 from stages.paint import paint_of
@@ -75,24 +75,26 @@ class Fading:
     """What went in the last steps, by step."""
 
     @classmethod
-    def begin(cls, snapshot: Snapshot, frames: int) -> "Fading":
+    def begin(cls, snapshot: Snapshot, frames: int, shares: np.ndarray | None = None) -> "Fading":
         """The first frame of a shot, with nothing behind it.
 
         Args:
             snapshot: The frame.
             frames: Frames over which triangles fade in; 0 for none.
+            shares: Which followed regions its triangles belong to, see `Paint`.
         """
         count = snapshot.mesh.triangle_count
         origins = Origins(
             np.full(count, MATURE), np.zeros((count, 3, 2)), np.zeros((count, 2), np.int64)
         )
-        return cls(frames, 0, snapshot.mesh, paint_of(snapshot), origins, {})
+        return cls(frames, 0, snapshot.mesh, paint_of(snapshot, shares), origins, {})
 
-    def followed_by(self, snapshot: Snapshot) -> "Fading":
+    def followed_by(self, snapshot: Snapshot, shares: np.ndarray | None = None) -> "Fading":
         """The next frame of the shot.
 
         Args:
             snapshot: The frame.
+            shares: Which followed regions its triangles belong to, see `Paint`.
 
         Returns:
             The same for every earlier frame with which it began, if more than `frames` ago.
@@ -107,7 +109,7 @@ class Fading:
         gone = np.flatnonzero(~stays[:-1])
         if self.frames and len(born) and len(gone):
             corners = self.mesh.vertices[by_vertex_id(self.mesh, gone)]
-            before = _before(self.mesh, mesh)[by_vertex_id(mesh, born)]
+            before = earlier_vertices(self.mesh, mesh)[by_vertex_id(mesh, born)]
             spans, links = overlaps(before, corners)
             covers = spans[:, 1] > spans[:, 0]
             origins.births[born] = np.where(covers, step, MATURE)
@@ -117,7 +119,7 @@ class Fading:
             self,
             step=step,
             mesh=mesh,
-            paint=paint_of(snapshot),
+            paint=paint_of(snapshot, shares),
             origins=origins,
             vanished=vanished,
         )
@@ -190,38 +192,6 @@ def _opacity(share: np.ndarray) -> np.ndarray:
 def _stretch(maps: np.ndarray) -> np.ndarray:
     """How far maps [N, 2, 3] are from a translation: the Frobenius norm of what differs [N]."""
     return np.linalg.norm(maps[:, :, :2] - np.eye(2), axis=(1, 2))
-
-
-def _before(before: Mesh, mesh: Mesh) -> np.ndarray:
-    """Where the vertices of a mesh lay one frame earlier; new ones move as those around them do.
-
-    Args:
-        before: The mesh of that frame.
-        mesh: The mesh.
-
-    Returns:
-        Positions [px], shape [V, 2].
-    """
-    places = kept_vertices(before, mesh)
-    known = places >= 0
-    steps = np.zeros((mesh.vertex_count, 2))
-    steps[known] = before.vertices[places[known]] - mesh.vertices[known]
-    tails, heads = mesh.edge_vertices.T
-    ends = np.concatenate([tails, heads]), np.concatenate([heads, tails])
-    told = known.copy()
-    while not told.all():
-        asks = ~told[ends[0]] & told[ends[1]]
-        asking, told_by = ends[0][asks], ends[1][asks]
-        counts = np.bincount(asking, minlength=mesh.vertex_count)
-        if not len(asking):
-            break  # nothing is left of the frame before
-        for axis in range(2):
-            sums = np.bincount(asking, steps[told_by, axis], mesh.vertex_count)
-            steps[counts > 0, axis] = sums[counts > 0] / counts[counts > 0]
-        told |= counts > 0
-    earlier = mesh.vertices + sliding(mesh, steps)
-    earlier[known] = before.vertices[places[known]]
-    return earlier
 
 
 def _mapped(maps: np.ndarray, points: np.ndarray) -> np.ndarray:

@@ -6,8 +6,13 @@ from stages.snapshot import Snapshot, colors_at_centres
 from warp_kernels.paint import Paint
 
 
-def paint_of(snapshot: Snapshot) -> Paint:
-    """Shapes and colours of all triangles of a snapshot."""
+def paint_of(snapshot: Snapshot, shares: np.ndarray | None = None) -> Paint:
+    """Shapes and colours of all triangles of a snapshot.
+
+    Args:
+        snapshot: The frame.
+        shares: Which followed regions each belongs to, see `Paint`; None if there are none.
+    """
     mesh, model, coefficients = snapshot.mesh, snapshot.model, snapshot.coefficients
     corners = mesh.vertices[mesh.triangles]
     centres = corners.mean(axis=1)
@@ -24,7 +29,7 @@ def paint_of(snapshot: Snapshot) -> Paint:
         gradients[:, 1] += x * curvatures[:, 2] + 2 * y * curvatures[:, 3]
         colors = colors - curvatures[:, 0]
     clipped = np.clip(colors, 0.0, 255.0)
-    return Paint(clipped, gradients, curvatures, corners, mesh.triangle_ids)
+    return Paint(clipped, gradients, curvatures, corners, mesh.triangle_ids, shares)
 
 
 def _curvatures(snapshot: Snapshot) -> np.ndarray:

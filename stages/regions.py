@@ -22,6 +22,9 @@ class Region:
     """A still, a video or numbered stills of the source's size: white where the style is."""
     style: Style = field(metadata={"registry": "warp_kernels.styles:STYLES"})
     """The style."""
+    frames: tuple[int, ...] = ()
+    """Numbers of the frames for which the mask was drawn, ascending: the triangles that it shows
+    there carry the style through their shot. Empty if the mask does not follow them."""
 
 
 class Mask:
@@ -30,13 +33,15 @@ class Mask:
     Args:
         path: A still for all frames, or a clip with a picture for each, by the frames' numbers.
         size: Width and height of the source, upright [px].
+        is_single: Whether one frame alone is asked for: others may be missing then.
 
     Raises:
         MediaError: If it cannot be read or has another size.
     """
 
-    def __init__(self, path: str, size: tuple[int, int]) -> None:
+    def __init__(self, path: str, size: tuple[int, int], *, is_single: bool = False) -> None:
         self._path = path
+        self._is_single = is_single
         info = probe(path)
         if (info.width, info.height) != size:
             raise MediaError(
@@ -64,7 +69,8 @@ class Mask:
             return self._last[1]
         first = 0 if self._is_still else index
         if self._decoder is None:
-            self._decoder = open_decoder(self._path, FrameRange(first), paper=BLACK)
+            wanted = FrameRange(first, first if self._is_single else None)
+            self._decoder = open_decoder(self._path, wanted, paper=BLACK)
         found = next(self._decoder, None)
         while found is not None and found.index < first:
             found = next(self._decoder, None)

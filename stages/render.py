@@ -24,6 +24,8 @@ class Renderer:
         output: Width and height of what is drawn [px].
         styles: Bottom to top.
         masked: Styles over these, each inside of a mask, bottom to top.
+        followed: Numbers of the masked styles that are drawn on the triangles of a followed
+            region instead.
 
     Raises:
         OptionError: If the output is too large or has no pixel.
@@ -37,13 +39,14 @@ class Renderer:
         output: tuple[int, int],
         styles: tuple[Style, ...],
         masked: tuple[Style, ...] = (),
+        followed: tuple[int, ...] = (),
     ) -> None:
         if not 1 <= min(output) <= max(output) <= MAX_SIDE:
             raise OptionError(
                 f"an output of {output[0]}x{output[1]}: sides must lie between 1 and {MAX_SIDE} px"
             )
         textures = [style.texture(read_gray) for style in (*styles, *masked)]
-        self._canvas = Canvas(device, picture, output, styles, masked, textures)
+        self._canvas = Canvas(device, picture, output, styles, masked, textures, followed)
 
     def render(
         self,
@@ -51,6 +54,7 @@ class Renderer:
         fading: Fading | None = None,
         source: np.ndarray | None = None,
         masks: Sequence[np.ndarray] = (),
+        shares: np.ndarray | None = None,
     ) -> np.ndarray:
         """Draw a snapshot.
 
@@ -59,14 +63,17 @@ class Renderer:
             fading: What lingers of the frames before it, if anything; it ends with the snapshot.
             source: The picture from which it was made [code values], [H, W, 3] uint8; needed if a
                 style does.
-            masks: For each masked style where it is drawn (255) and where not (0), [H, W] uint8.
+            masks: For each masked style that is not followed where it is drawn (255) and where
+                not (0), [H, W] uint8.
+            shares: Which followed regions the triangles belong to, see `Paint`; with `fading`
+                those that it was told.
 
         Returns:
             Code values, [rows, columns, 3] uint8, or [rows, columns, 4] with straight alpha if no
             style of the stack is opaque.
         """
         mesh = snapshot.mesh
-        paint, layers = (paint_of(snapshot), None) if fading is None else fading.layers()
+        paint, layers = (paint_of(snapshot, shares), None) if fading is None else fading.layers()
         return self._canvas.draw(
             vertices=mesh.vertices,
             triangles=mesh.triangles,

@@ -21,6 +21,8 @@ from warp_kernels.tones.tonal_art_map import DARKEST
 
 KINDS = (Hatching, Crosshatching)
 BLACK_ON_WHITE = {"ink": "#000", "paper": "#fff"}
+PEN = {"paper": "#f8f4ea"}
+"""Ink on a sheet."""
 WIDTH, HEIGHT = 240, 180
 """Of the picture [px]."""
 DIRECTIONS = {0.0, 90.0, 36.87}
@@ -78,6 +80,28 @@ def test_coloured_pencils_give_the_colour_of_the_triangle(color: tuple, device: 
 
 
 @pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("color", [(200, 120, 60), (90, 140, 200), (30, 40, 30), (140, 140, 140)])
+def test_strokes_on_its_own_colour_keep_it(kind: type[Drawn], color: tuple, device: str) -> None:
+    """What they take away the paper between them gets, at any contrast; at 0 nothing is seen."""
+    spread = []
+    for contrast in (0.0, 0.5, 1.0):
+        style = kind(spacing=2.0, contrast=contrast)
+        pixels = draw(two_triangles(), color, device, style, 2.0)
+        np.testing.assert_allclose(255.0 * np.sqrt(light(pixels)), color, atol=3.0)
+        spread.append(pixels.std(axis=(0, 1)).max() / max(color))
+    assert spread[0] < 0.01
+    assert 0.03 < spread[1] < 0.7 * spread[2]
+
+
+def test_paper_of_its_own_colour_is_no_brighter_than_white(device: str) -> None:
+    """Where a channel cannot be raised strokes still show; they darken it a little."""
+    pixels = draw(two_triangles(), (255, 40, 20), device, Hatching(), 2.0)
+    assert pixels[..., 0].max() == 255.0
+    assert 170.0 < pixels[..., 0].min() < 190.0
+    assert draw(two_triangles(), 255, device, Hatching()).min() == 255.0
+
+
+@pytest.mark.parametrize("kind", KINDS)
 def test_strokes_fade_in(kind: type[Drawn], device: str) -> None:
     """A triangle that darkens a little changes a little everywhere: no stroke pops up."""
     style = kind(lighten=0.0, **BLACK_ON_WHITE)
@@ -108,7 +132,7 @@ def test_strokes_without_paper_lie_on_what_is_below(kind: type[Drawn], device: s
 @pytest.mark.parametrize("first_id", [0, 1, 2, 5])
 def test_strokes_follow_the_base_edge(first_id: int, device: str) -> None:
     """They lie along a side; turning the base edge goes through all sides and back."""
-    mesh, style = two_triangles(first_id), Hatching(spacing=6.0)
+    mesh, style = two_triangles(first_id), Hatching(spacing=6.0, **PEN)
     found = []
     for _ in range(3):
         found.append(direction(upper_right(draw(mesh, 140, device, style, 2.0))))
@@ -119,9 +143,22 @@ def test_strokes_follow_the_base_edge(first_id: int, device: str) -> None:
         assert abs((angle - side + 90) % 180 - 90) < 3.0
 
 
+@pytest.mark.parametrize("first_id", [0, 1, 2, 3])
+def test_strokes_run_along_needles(first_id: int, device: str) -> None:
+    """Whichever of its sides is the base: across it they would be a row of ticks."""
+    points = np.array([[0, 0], [WIDTH, 0], [WIDTH, 40], [0, 40]], dtype=float)
+    mesh = mesh_of(points, [[0, 1, 2], [0, 2, 3]], WIDTH, 40)
+    mesh = replace(mesh, triangle_ids=first_id + np.arange(2))
+    for _ in range(3):
+        pixels = draw(mesh, 140, device, Hatching(spacing=6.0, **PEN), 2.0)
+        angle = direction(pixels[4:24, 200:440])
+        assert abs((angle + 90) % 180 - 90) < 12.0
+        mesh = turn_base_edge(mesh, np.array([0, 1]))
+
+
 def test_angle_turns_the_strokes(device: str) -> None:
     """From the base edge, clockwise on the screen."""
-    styles = (Hatching(spacing=6.0, angle=angle) for angle in (0.0, 25.0))
+    styles = (Hatching(spacing=6.0, angle=angle, **PEN) for angle in (0.0, 25.0))
     pictures = (draw(two_triangles(), 140, device, style, 2.0) for style in styles)
     straight, turned = (direction(upper_right(pixels)) for pixels in pictures)
     assert abs((turned - straight) % 180 - 25.0) < 3.0
@@ -130,7 +167,7 @@ def test_angle_turns_the_strokes(device: str) -> None:
 @pytest.mark.parametrize("spacing", [5.0, 9.0])
 def test_lines_have_their_distance(spacing: float, device: str) -> None:
     """In pixels of the picture."""
-    style = Hatching(spacing=spacing)
+    style = Hatching(spacing=spacing, **PEN)
     pixels = upper_right(draw(two_triangles(), 120, device, style, 2.0))[..., 0]
     spectrum = np.abs(np.fft.fft2(pixels - pixels.mean(), s=(512, 512)))
     waves = np.unravel_index(spectrum.argmax(), spectrum.shape)
@@ -141,7 +178,7 @@ def test_lines_have_their_distance(spacing: float, device: str) -> None:
 def test_each_triangle_has_strokes_of_its_own(device: str) -> None:
     """They belong to its number, not to its shape or place; the seed chooses others."""
     pictures = [
-        draw(two_triangles(first_id), 140, device, Hatching(seed=seed))
+        draw(two_triangles(first_id), 140, device, Hatching(seed=seed, **PEN))
         for first_id, seed in ((4, 0), (4, 0), (7, 0), (4, 9))
     ]
     np.testing.assert_array_equal(pictures[0], pictures[1])

@@ -51,7 +51,7 @@ def test_sheet_is_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsy
     command = ["styles", str(picture), "--sheet", str(sheet), "--triangles", "30"]
     assert main(command) == 0
     height = round(style_sheet.WIDTH * 32 / 48)
-    columns = 5 * (style_sheet.WIDTH + GAP) + GAP
+    columns = style_sheet.COLUMNS * (style_sheet.WIDTH + GAP) + GAP
     assert cv2.imread(str(sheet)).shape == (GAP + height + CAPTION + GAP, columns, 3)
     assert main(command) == 4
     assert "exists already" in capsys.readouterr().err

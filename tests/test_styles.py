@@ -237,3 +237,17 @@ def test_mistakes_name_what_is_allowed(spec: str, named: str, device: str) -> No
     assert spec.partition(":")[0] in text
     assert named in text
     assert "\n" not in text
+
+
+def test_textures_are_sharp_in_flat_triangles(device: str) -> None:
+    """As from further away: ten times as wide as high, they were drawn from far too few texels."""
+    points = np.array([[0, 0], [240, 0], [240, 24], [0, 24]], dtype=float)
+    mesh = mesh_of(points, [[0, 1, 2], [0, 2, 3]], 240, 24)
+    snapshot = snapshot_with(mesh, np.full((2, 3), 128.0))
+    style = STYLES["texture"](file="triangle")
+    near, far = (
+        Renderer(Device(device), (240, 24), (240 * zoom, 24 * zoom), (style,)).render(snapshot)
+        for zoom in (1, 8)
+    )
+    from_afar = far.reshape(24, 8, 240, 8, 3).mean(axis=(1, 3))
+    assert np.abs(near - from_afar).mean() < 1.2

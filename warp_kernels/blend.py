@@ -39,6 +39,8 @@ class Coat:
     """Whether its ink is the same all over a triangle."""
     is_masked: bool = False
     """Whether it is drawn inside of a mask alone."""
+    is_followed: bool = False
+    """Whether it is drawn on the triangles of a followed region alone."""
 
 
 @wp.func
@@ -185,6 +187,7 @@ def stack_of(coats: tuple[Coat, ...]) -> Any:
         return nothing
     top, layer = coats[-1].shader, len(coats) - 1
     below, is_masked = stack_of(coats[:-1]), coats[-1].is_masked
+    is_followed = coats[-1].is_followed
     on_opaque = any(coat.is_opaque for coat in coats[:-1])
     lay = _laid(coats[-1].blend, on_opaque) if len(coats) > 1 else lay_on_nothing
     cover = inked_on_opaque if on_opaque else inked
@@ -205,6 +208,8 @@ def stack_of(coats: tuple[Coat, ...]) -> Any:
             coated.calm = 0.0
             row = own.mask * scene.mask_rows
             ink.opacity *= mask_at(scene.masks, row, scene.mask_rows, sample.place)
+        if wp.static(is_followed):
+            ink.opacity *= float(scene.shares[sample.triangle, own.mask]) / 255.0
         coated.color = cover(under, lay(under, ink.color, ink.opacity * own.opacity), ink.coverage)
         return coated
 

@@ -37,6 +37,8 @@ class Canvas:
         styles: Bottom to top.
         masked: Styles over these, each inside of a mask.
         textures: What the shader of each style looks into, or None; masked ones last.
+        followed: Numbers of the masked styles that are drawn on triangles of `Paint.shares`
+            instead, in the order of these.
     """
 
     def __init__(
@@ -47,13 +49,14 @@ class Canvas:
         styles: tuple[Style, ...],
         masked: tuple[Style, ...],
         textures: list[Texture | None],
+        followed: tuple[int, ...] = (),
     ) -> None:
         self.device = device
         self.picture = picture
         self.output = output
         self.samples = max(1, min(SAMPLES, MAX_SIDE // max(output)))
-        self._coats = coats_of(styles, masked)
-        self._masked = len(masked)
+        self._coats = coats_of(styles, masked, followed)
+        self._masked, self._followed = len(masked) - len(followed), len(followed)
         styles = (*styles, *masked)
         self._prepares = {i: s.prepare for i, s in enumerate(styles) if s.prepare is not None}
         width, height = output
@@ -92,7 +95,9 @@ class Canvas:
         self._steady["levels"] = self._filled(levels, wp.vec4i)
         packed = np.zeros(max(1, len(styles)), dtype=StyleParameters.numpy_dtype())
         packed["row"] = np.arange(len(packed))
-        packed["mask"] = np.arange(len(packed)) - (len(styles) - self._masked)
+        for kind in ("is_masked", "is_followed"):
+            own = [row for row, coat in enumerate(self._coats) if getattr(coat, kind)]
+            packed["mask"][own] = np.arange(len(own))
         for row, style, (first, count) in zip(packed, styles, ranges, strict=False):
             numbers = style.numbers()
             row["numbers"].reshape(-1)[: len(numbers)] = numbers
@@ -153,6 +158,8 @@ class Canvas:
         """Hand over colours, and shapes if they are looked at."""
         write, tables = self.device.write, self._tables
         write(tables["colors"], paint.colors)
+        if self._followed and paint.shares is not None:
+            write(tables["shares"], paint.shares)
         write(self._curved, np.array([0 if paint.curvatures is None else 1]))
         if paint.curvatures is not None:
             write(tables["curvatures"], paint.curvatures)
@@ -197,6 +204,7 @@ class Canvas:
             "lines": self._empty(layers, wp.mat33f),
             "hashes": self._empty(layers, wp.uint32),
             "prepared": self._empty((len(self._parameters), layers), Numbers),
+            "shares": self._empty((layers, max(1, self._followed)), wp.uint8),
         }
         tables = LayerTables()
         tables.weights = self._empty(layers, float)
@@ -277,18 +285,26 @@ class Canvas:
         return array
 
 
-def coats_of(styles: tuple[Style, ...], masked: tuple[Style, ...]) -> tuple[Coat, ...]:
+def coats_of(
+    styles: tuple[Style, ...], masked: tuple[Style, ...], followed: tuple[int, ...] = ()
+) -> tuple[Coat, ...]:
     """What a kernel depends on; over an opaque style it does not matter whether one is opaque.
 
     Args:
         styles: Bottom to top.
         masked: Those over them that are drawn inside of masks.
+        followed: Numbers of those among these that are drawn on triangles of a region instead.
     """
     coats = [Coat(s.shader, s.blend, s.is_opaque, s.covers, s.is_even) for s in styles]
     for number in range(1, len(coats)):
         if any(coat.is_opaque for coat in coats[:number]):
             coats[number] = replace(coats[number], is_opaque=False)
-    return *coats, *(Coat(s.shader, s.blend, False, s.covers, False, True) for s in masked)
+    for number, s in enumerate(masked):
+        coat = Coat(s.shader, s.blend, False, s.covers, s.is_even, is_followed=True)
+        if number not in followed:
+            coat = replace(coat, is_even=False, is_masked=True, is_followed=False)
+        coats.append(coat)
+    return tuple(coats)
 
 
 def centres(side: int, count: int) -> np.ndarray:

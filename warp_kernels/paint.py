@@ -21,6 +21,8 @@ class Paint:
     """Positions of the corners, corner 0 first [px of the picture], [N, 3, 2]."""
     ids: np.ndarray
     """Persistent numbers of the triangles, [N] int64."""
+    shares: np.ndarray | None = None
+    """How much each belongs to every followed region, 0 to 255, [N, R] uint8; None for R = 0."""
 
     def of(self, triangles: np.ndarray) -> "Paint":
         """Some of the triangles, by their numbers [M]."""
@@ -30,6 +32,7 @@ class Paint:
             None if self.curvatures is None else self.curvatures[triangles],
             self.corners[triangles],
             self.ids[triangles],
+            None if self.shares is None else self.shares[triangles],
         )
 
     @property
@@ -46,14 +49,16 @@ class Paint:
 
 
 def joined_paint(parts: list[Paint]) -> Paint:
-    """Triangles of one colour model, one after the other."""
+    """Triangles of one colour model and one look, one after the other."""
     curvatures = [part.curvatures for part in parts if part.curvatures is not None]
+    shares = [part.shares for part in parts if part.shares is not None]
     return Paint(
         np.concatenate([part.colors for part in parts]),
         np.concatenate([part.gradients for part in parts]),
         np.concatenate(curvatures) if curvatures else None,
         np.concatenate([part.corners for part in parts]),
         np.concatenate([part.ids for part in parts]),
+        np.concatenate(shares) if shares else None,
     )
 
 

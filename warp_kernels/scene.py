@@ -33,7 +33,7 @@ class StyleParameters:
     row: int
     """Its row of `Scene.prepared`."""
     mask: int
-    """Number of its mask, if it has one."""
+    """Number of its mask or of its followed region, if it has one."""
 
 
 @wp.struct
@@ -70,6 +70,8 @@ class Scene:
     """Where masked styles are drawn, 255 for fully; masks of the picture, one below the other."""
     mask_rows: int
     """Rows of a mask."""
+    shares: wp.array2d(dtype=wp.uint8)
+    """How much every triangle belongs to every followed region, 255 for fully, [T, regions]."""
     texels: wp.array(dtype=wp.uint8)
     """The textures of all styles; see `texture`."""
     levels: wp.array(dtype=wp.vec4i)

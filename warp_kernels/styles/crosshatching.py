@@ -15,4 +15,4 @@ class Crosshatching(Drawn):
     """
 
     drawing: ClassVar[Drawing] = staticmethod(crossing_strokes)
-    portraits: ClassVar[tuple[str, ...]] = ("crosshatching:spacing=3",)
+    portraits: ClassVar[tuple[str, ...]] = ("crosshatching:paper=#f8f4ea,spacing=3",)

@@ -15,15 +15,20 @@ from warp_kernels.tones.tonal_art_map import SPACING, Drawing, tonal_art_map
 
 NO_PAPER = "none"
 """Written instead of a colour where what lies below is the paper."""
+OWN_PAPER = "triangle"
+"""Written instead of a colour where every triangle is a paper of its own colour."""
+SHEET = "#f8f4ea"
+"""Paper of pencils where none is named."""
 
 
 @dataclass(frozen=True)
 class Drawn(Style):
     """Strokes of a pen or a pencil, denser where the picture is darker.
 
-    Without paper they darken what lies below: over `flat` that is the paper's Fig. 1, left.
-    They lie in the plane of the picture, so all of them have one width, and they are fixed to the
-    centre and the base edge of their triangle: they move with it and in no other way.
+    Each triangle is a paper of its own colour that the strokes darken, as in the paper's Fig. 1,
+    left; or all are one sheet, or there is none and strokes darken what lies below. They lie in the
+    plane of the picture, so all of them have one width, and they are fixed to the centre and the
+    base edge of their triangle: they move with it and in no other way.
 
     Source: Lawonn & Guenther, Stylized Image Triangulation (2018), Sec. 5; Praun et al., Real-time
         hatching (2001), Sec. 5: blending between tones.
@@ -57,8 +62,17 @@ class Drawn(Style):
     )
     ink: str = field(default="#24242c", metadata={"help": "#rgb or #rrggbb", "form": "color"})
     paper: str = field(
-        default="#f8f4ea",
-        metadata={"help": "#rgb or #rrggbb, or none: strokes alone, on what lies below"},
+        default="triangle",
+        metadata={
+            "help": "triangle: each its own colour; #rgb or #rrggbb: a sheet; none: strokes alone"
+        },
+    )
+    contrast: float = field(
+        default=0.5,
+        metadata={
+            "help": "how dark strokes are on paper in the triangle's own colour",
+            "range": (0.0, 1.0),
+        },
     )
     colored: float = field(
         default=0.0,
@@ -86,9 +100,9 @@ class Drawn(Style):
     def __post_init__(self) -> None:
         super().__post_init__()
         try:
-            parse_color(self.paper if self.paper != NO_PAPER else "#fff")
+            parse_color(self._sheet)
         except OptionError as error:
-            raise OptionError(f"{error}, or {NO_PAPER}") from error
+            raise OptionError(f"{error}, or {OWN_PAPER}, or {NO_PAPER}") from error
 
     @property
     def shader(self) -> Any:
@@ -102,11 +116,15 @@ class Drawn(Style):
 
     def numbers(self) -> tuple[float, ...]:
         """In the order of `tones.strokes`."""
-        sheet = "#fff" if self.paper == NO_PAPER else self.paper
-        light = (value**2 for color in (self.ink, sheet) for value in parse_color(color))
+        light = (value**2 for color in (self.ink, self._sheet) for value in parse_color(color))
         turn = radians(self.angle)
         rest = (SPACING / self.spacing, cos(turn), sin(turn), self.lighten, self.colored, self.seed)
-        return (*light, *rest)
+        return (*light, *rest, float(self.paper == OWN_PAPER), self.contrast)
+
+    @property
+    def _sheet(self) -> str:
+        """The colour of a sheet, whether or not it is looked at."""
+        return {NO_PAPER: "#fff", OWN_PAPER: SHEET}.get(self.paper, self.paper)
 
     def texture(self, read: ReadPicture) -> Texture:
         """The tonal art map."""

@@ -16,4 +16,8 @@ class Hatching(Drawn):
     """
 
     drawing: ClassVar[Drawing] = staticmethod(parallel_strokes)
-    portraits: ClassVar[tuple[str, ...]] = ("hatching", "hatching:colored=1")
+    portraits: ClassVar[tuple[str, ...]] = (
+        "hatching",
+        "hatching:paper=#f8f4ea",
+        "hatching:colored=1",
+    )

@@ -49,8 +49,8 @@ def nested_triangles() -> np.ndarray:
         place = np.tensordot(turn, place, axes=1)
         depth += (place >= 0).all(axis=0)
     share = depth / NESTED
-    stripes = np.where(depth % 2 == 0, -0.07, 0.07)
-    return averaged(0.42 + 0.2 * share + stripes)
+    stripes = np.where(depth % 2 == 0, -0.05, 0.05)
+    return averaged(0.46 + 0.14 * share + stripes)
 
 
 PICTURES: dict[str, Callable[[], np.ndarray]] = {

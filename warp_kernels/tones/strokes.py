@@ -29,6 +29,10 @@ COLORED = wp.constant(10)
 """From ink (0) to pencils in the colours of the triangles (1)."""
 SEED = wp.constant(11)
 """Chooses the places on the tile."""
+OWN = wp.constant(12)
+"""1 where the paper of a triangle is its own colour, else 0."""
+CONTRAST = wp.constant(13)
+"""How dark strokes are there: 0 to 1."""
 
 # Prepared for a triangle: light of its pen, of its paper, then these.
 BEGIN = wp.constant(6)
@@ -46,9 +50,16 @@ RIGHT_OF_CORNER = wp.constant(11)
 BELOW_CORNER = wp.constant(12)
 """The same, down."""
 
+WHITE = wp.constant(255.0 * 255.0)
+"""The most light."""
 SHARPNESS = wp.constant(0.75)
 """Texels are about this part of an output pixel: at 1 lines lose more contrast than jaggedness,
 at 1/2 four times as many texels pass through the caches."""
+NEEDLE = wp.constant(0.3)
+"""Triangles with a side that is shorter than this part of the next one are needles."""
+BRIGHTEST = wp.constant(5.0)
+"""Light of the paper beside coloured pencils, at most, relative to that of the triangle: brighter
+slivers would sparkle in dark triangles."""
 TINT = wp.constant(0.5)
 """How much of a triangle's colour lies under the strokes of coloured pencils."""
 SATURATION = wp.constant(0.3)
@@ -65,6 +76,12 @@ class Coloring:
     """Light between them."""
     amount: float
     """Part of the paper that strokes cover."""
+
+
+@wp.func
+def white() -> wp.vec3f:
+    """Light of white."""
+    return wp.vec3f(WHITE, WHITE, WHITE)
 
 
 @wp.func
@@ -91,13 +108,27 @@ def in_ink(n: Numbers, color: wp.vec3f) -> Coloring:
 
 
 @wp.func
+def on_own_color(n: Numbers, color: wp.vec3f) -> Coloring:
+    """Strokes that multiply the triangle's colour; from afar it is seen unchanged.
+
+    What strokes take away the paper between them gets: both together are the triangle's light,
+    but for channels that are too bright to be raised.
+    """
+    coloring = in_ink(n, color)
+    light = to_light(color)
+    taken = wp.cw_mul(n[CONTRAST] * light, white() - coloring.pen) / WHITE
+    coloring.paper = wp.min(light + coloring.amount * taken, white())
+    coloring.pen = wp.max(coloring.paper - taken, wp.vec3f())
+    return coloring
+
+
+@wp.func
 def in_pencil(n: Numbers, color: wp.vec3f) -> Coloring:
     """A pencil for each triangle, such that from afar its colour is seen, on tinted paper."""
     light = to_light(color)
     tinted = wp.lerp(three(n, PAPER), light, TINT)
-    # beside the blackest strokes slivers of bright paper would still make dark triangles grey
-    brightest = brightness_of(light) * wp.static(1.0 / (1.0 - DARKEST))
     coloring = Coloring()
+    brightest = BRIGHTEST * brightness_of(light)
     coloring.paper = wp.min(1.0, brightest / wp.max(brightness_of(tinted), 1.0)) * tinted
     kept = wp.cw_div(light, wp.max(coloring.paper, wp.vec3f(1.0, 1.0, 1.0)))
     least = 1.0 - wp.min(wp.min(kept[0], kept[1]), wp.min(kept[2], 1.0))
@@ -111,6 +142,8 @@ def in_pencil(n: Numbers, color: wp.vec3f) -> Coloring:
 def coloring_of(n: Numbers, color: wp.vec3f) -> Coloring:
     """Between ink and coloured pencils."""
     coloring = in_ink(n, color)
+    if n[OWN] > 0.0:
+        coloring = on_own_color(n, color)
     if n[COLORED] > 0.0:
         pencil = in_pencil(n, color)
         coloring.pen = wp.lerp(coloring.pen, pencil.pen, n[COLORED])
@@ -120,18 +153,30 @@ def coloring_of(n: Numbers, color: wp.vec3f) -> Coloring:
 
 
 @wp.func
+def edge_from(scene: Scene, triangle: int, corner: int) -> wp.vec2f:
+    """The edge to the next corner from a corner; 3 is corner 0 again."""
+    side = scene.sides[triangle, 0]
+    if corner == 1:
+        side = scene.sides[triangle, 1] - scene.sides[triangle, 0]
+    if corner == 2:
+        side = -scene.sides[triangle, 1]
+    return side
+
+
+@wp.func
 def base_edge(scene: Scene, triangle: int) -> wp.vec2f:
     """Unit vector along the edge that strokes follow, chosen by chance but for ever.
 
     Source: Lawonn & Guenther, Stylized Image Triangulation (2018), Sec. 5: randomly chosen; Sec.
         3.5: users turn it, which turns the row of corners here.
+    Deviation: never the short side of a needle, along which strokes would be a row of ticks that
+        turn with every step of its ends; the next side is taken instead.
     """
-    edge = scene.sides[triangle, 0]
-    choice = (scene.hashes[triangle] >> wp.uint32(24)) % wp.uint32(3)
-    if choice == wp.uint32(1):
-        edge = scene.sides[triangle, 1] - scene.sides[triangle, 0]
-    if choice == wp.uint32(2):
-        edge = -scene.sides[triangle, 1]
+    choice = int((scene.hashes[triangle] >> wp.uint32(24)) % wp.uint32(3))
+    edge = edge_from(scene, triangle, choice)
+    other = edge_from(scene, triangle, choice + 1)
+    if wp.length(edge) < NEEDLE * wp.length(other):
+        edge = other
     return edge / wp.max(wp.length(edge), 1.0e-6)
 
 
