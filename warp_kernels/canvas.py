@@ -12,10 +12,11 @@ from warp_kernels.device import Device, Phase
 from warp_kernels.gbuffer import record_gbuffer
 from warp_kernels.layers import Layers, LayerTables
 from warp_kernels.paint import Paint, shapes_of, to_places
+from warp_kernels.points import LIST, parts_of_a_pixel
 from warp_kernels.prepare import record_prepare
 from warp_kernels.raster import MAX_SIDE
 from warp_kernels.scene import FIXED, FRACTION_BITS, Numbers, Scene, StyleParameters
-from warp_kernels.shade import parts_of_a_pixel, record_shade
+from warp_kernels.shade import record_shade
 from warp_kernels.source_picture import reduced, step_for
 from warp_kernels.styles import Style
 from warp_kernels.texture import Texture, pack
@@ -53,15 +54,18 @@ class Canvas:
         self.output = output
         self.samples = max(1, min(SAMPLES, MAX_SIDE // max(output)))
         self._coats = coats_of(styles, masked)
+        self._is_even = all(style.is_even for style in styles) and not masked
         self._masked = len(masked)
         styles = (*styles, *masked)
         self._prepares = {i: s.prepare for i, s in enumerate(styles) if s.prepare is not None}
         width, height = output
         columns = width * self.samples
         self._band = max(1, min(height, BAND_SAMPLES // (columns * self.samples)))
-        self._triangle_of = device.empty((self._band * self.samples, columns), int)
+        # a row more than there is: the last pixel's last sample is read together with three more
+        self._triangle_of = device.empty((self._band * self.samples + 1, columns), int)
+        self._points = device.empty((self._band, LIST), int)
         is_opaque = any(coat.is_opaque for coat in self._coats)
-        self._pixels = device.empty((height, width), wp.vec3ub if is_opaque else wp.vec4ub)
+        self._pixels = device.empty((height, width, 3 if is_opaque else 4), wp.uint8)
         self._curved = device.empty(1, int)
         self._steady = self._steady_scene(needs_source=any(s.needs_source for s in styles))
         self._parameters = self._parameters_of(styles, textures)
@@ -81,7 +85,7 @@ class Canvas:
             "columns": self._filled(centres(width, self.output[0]), int),
             "rows": self._filled(centres(height, self.output[1]), int),
             "pixel": float(np.sqrt((0.5 / np.square(self._scale)).sum())),
-            "parts": self._filled(parts_of_a_pixel(self.samples), wp.vec4f),
+            "parts": self._filled(parts_of_a_pixel(self.samples), float),
             "sample_size": wp.vec2f(*(FIXED / (scale * self.samples) for scale in self._scale)),
         }
 
@@ -133,8 +137,7 @@ class Canvas:
             self._write_layers(layers)
         self.device.write(self._vertices, vertices)
         self.device.write(self._triangles, triangles)
-        is_even = all(coat.is_even for coat in self._coats)
-        self._write_paint(paint, shapes=not is_even or layers is not None)
+        self._write_paint(paint, shapes=not self._is_even or layers is not None)
         if source is not None and self._steady["source"].size > 1:
             self.device.write(self._steady["source"], reduced(source, self._steady["source_step"]))
         if masks:
@@ -188,12 +191,12 @@ class Canvas:
         self._vertices = self._empty(vertices, wp.vec2d)
         self._triangles = self._empty(triangles, wp.vec3i)
         self._tables = {
-            "colors": self._empty(layers, wp.vec3f),
+            "colors": self._empty((layers, 3), float),
             "gradients": self._empty((layers, 2), wp.vec3f),
-            "curvatures": self._empty((layers, 4), wp.vec3f),
+            "curvatures": self._empty((layers, 4, 3), float),
             "anchors": self._empty(layers, wp.vec2i),
-            "sides": self._empty((layers, 2), wp.vec2f),
-            "incircles": self._empty(layers, wp.vec3f),
+            "sides": self._empty((layers, 2, 2), float),
+            "incircles": self._empty((layers, 3), float),
             "lines": self._empty(layers, wp.mat33f),
             "hashes": self._empty(layers, wp.uint32),
             "prepared": self._empty((len(self._parameters), layers), Numbers),
@@ -263,6 +266,7 @@ class Canvas:
             fades=fades,
             triangle_of=self._triangle_of,
             top=top,
+            points_out=self._points,
             canvas_out=self._pixels,
         )
         return filling, shading
@@ -272,7 +276,8 @@ class Canvas:
 
     def _filled(self, values: np.ndarray, dtype: Any) -> wp.array:
         """A device array of given values."""
-        array = self.device.empty(len(values), dtype)
+        shape = values.shape if dtype is float else len(values)
+        array = self.device.empty(shape, dtype)
         self.device.write(array, values)
         return array
 
@@ -284,11 +289,11 @@ def coats_of(styles: tuple[Style, ...], masked: tuple[Style, ...]) -> tuple[Coat
         styles: Bottom to top.
         masked: Those over them that are drawn inside of masks.
     """
-    coats = [Coat(s.shader, s.blend, s.is_opaque, s.covers, s.is_even) for s in styles]
+    coats = [Coat(s.shader, s.blend, s.is_opaque, s.covers) for s in styles]
     for number in range(1, len(coats)):
         if any(coat.is_opaque for coat in coats[:number]):
             coats[number] = replace(coats[number], is_opaque=False)
-    return *coats, *(Coat(s.shader, s.blend, False, s.covers, False, True) for s in masked)
+    return *coats, *(Coat(s.shader, s.blend, False, s.covers, True) for s in masked)
 
 
 def centres(side: int, count: int) -> np.ndarray:

@@ -32,7 +32,7 @@ def fill_triangles(
     if triangle >= span[0][1]:
         return
     width = triangle_out.shape[1]
-    height = triangle_out.shape[0]
+    height = triangle_out.shape[0] - 1
     corners = triangles[triangle]
     above = wp.vec2i(0, first_row * _UNIT)
     top = to_fixed(wp.cw_mul(vertices[corners[0]], scale)) - above

@@ -40,21 +40,23 @@ class StyleParameters:
 class Scene:
     """One frame's triangles, as shaders see them."""
 
-    colors: wp.array(dtype=wp.vec3f)
-    """Mean colour of every triangle [code values], [T]."""
+    colors: wp.array2d(dtype=float)
+    """Mean colour of every triangle [code values], [T, 3]; see `color_of`."""
     gradients: wp.array2d(dtype=wp.vec3f)
     """Change of colour per px to the right and down, at the centre [code values / px], [T, 2]."""
-    curvatures: wp.array2d(dtype=wp.vec3f)
+    curvatures: wp.array3d(dtype=float)
     """What a quadratic colour adds to that: its difference from the mean at the centre [code
-    values], then the coefficients of x^2, x y and y^2 from there [code values / px^2], [T, 4]."""
+    values], then the coefficients of x^2, x y and y^2 from there [code values / px^2],
+    [T, 4, 3]."""
     curved: wp.array(dtype=int)
     """1 where colours are quadratic, 0 where `curvatures` are not to be read, [1]."""
     anchors: wp.array(dtype=wp.vec2i)
     """Place of every triangle's corner 0, which starts its base edge [2^-16 px], [T]."""
-    sides: wp.array2d(dtype=wp.vec2f)
-    """Corners 1 and 2 from corner 0 [px of the picture]; the first is the base edge, [T, 2]."""
-    incircles: wp.array(dtype=wp.vec3f)
-    """Incentre from corner 0 and the inradius [px of the picture], [T]."""
+    sides: wp.array3d(dtype=float)
+    """Corners 1 and 2 from corner 0 [px of the picture]; the first is the base edge, [T, 2, 2]; see
+    `side_of`."""
+    incircles: wp.array2d(dtype=float)
+    """Incentre from corner 0 and the inradius [px of the picture], [T, 3]."""
     lines: wp.array(dtype=wp.mat33f)
     """Rows (a, b, c) for the sides from corners 0, 1 and 2 on: a x + b y + c is the distance from
     the side to the inside, (x, y) seen from corner 0 [px of the picture], [T]."""
@@ -80,8 +82,8 @@ class Scene:
     """The same of every output row, [rows]."""
     pixel: float
     """Size of an output pixel [px of the picture]."""
-    parts: wp.array(dtype=wp.vec4f)
-    """Every set of samples of a pixel, see `shade.parts_of_a_pixel`."""
+    parts: wp.array2d(dtype=float)
+    """Every set of samples of a pixel, see `points.parts_of_a_pixel`, [sets, 4]."""
     sample_size: wp.vec2f
     """Width and height of the parts of an output pixel that are told apart [2^-16 px]."""
 
@@ -115,9 +117,30 @@ class Ink:
     """How much the ink hides, 0 to 1; mixes code values, as painting programs do."""
     coverage: float
     """Part of the point that is inked at all, 0 to 1; mixes light, as the eye does."""
-    calm: float
-    """How far its triangle goes on to the right of the point and is inked alike [px], so that the
-    next points need not be asked for; `FAR` if all of it is inked alike, 0 if it is not known."""
+
+
+@wp.func
+def color_of(scene: Scene, triangle: int) -> wp.vec3f:
+    """Mean colour of a triangle [code values].
+
+    Read number by number, as are sides: a vector that is read as a whole is two numbers in one to
+    the compiler, which then does not take several points at a time.
+    """
+    return wp.vec3f(
+        scene.colors[triangle, 0], scene.colors[triangle, 1], scene.colors[triangle, 2]
+    )
+
+
+@wp.func
+def side_of(scene: Scene, triangle: int, number: int) -> wp.vec2f:
+    """Corner 1 (number 0) or 2 (number 1) of a triangle from corner 0 [px of the picture]."""
+    return wp.vec2f(scene.sides[triangle, number, 0], scene.sides[triangle, number, 1])
+
+
+@wp.func
+def incentre_of(scene: Scene, triangle: int) -> wp.vec2f:
+    """Centre of a triangle's incircle from corner 0 [px of the picture]."""
+    return wp.vec2f(scene.incircles[triangle, 0], scene.incircles[triangle, 1])
 
 
 @wp.func
@@ -147,3 +170,26 @@ def offset_of(place: wp.vec2i, anchor: wp.vec2i) -> wp.vec2f:
     """A place seen from another one [px]; the difference is exact before it is rounded."""
     away = place - anchor
     return wp.vec2f(float(away[0]), float(away[1])) / FIXED
+
+
+@wp.func
+def sample_at(scene: Scene, triangle: int, middle: wp.vec2i, part: int, samples: int) -> Sample:
+    """The point of a pixel that stands for those of its samples that lie in one triangle.
+
+    Args:
+        scene: Knows where the triangle lies and what the sets of samples are.
+        triangle: The triangle.
+        middle: Place of the centre of the pixel [2^-16 px].
+        part: The samples, as bits.
+        samples: Samples of a pixel, across and down each.
+    """
+    least = 1.0 / float(samples)
+    right = int(wp.rint(scene.parts[part, 1] * scene.sample_size[0]))
+    down = int(wp.rint(scene.parts[part, 2] * scene.sample_size[1]))
+    here = Sample()
+    here.triangle = triangle
+    here.place = wp.vec2i(middle[0] + right, middle[1] + down)
+    here.offset = offset_of(here.place, scene.anchors[triangle])
+    # as wide as a strip of so many samples beside the border
+    here.extent = scene.pixel * wp.max(scene.parts[part, 0] * (least * least), least)
+    return here

@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 
 import warp as wp
 
-from warp_kernels.scene import Ink, Sample, Scene, StyleParameters
+from warp_kernels.scene import Ink, Sample, Scene, StyleParameters, color_of, incentre_of, side_of
 from warp_kernels.styles.style import Style
 from warp_kernels.triangle_frame import coverage_of, from_incentre, inradius
 
@@ -45,17 +45,16 @@ def packed_color(scene: Scene, parameters: StyleParameters, sample: Sample, belo
     t = sample.triangle
     p = from_incentre(scene, sample)
     radius = inradius(scene, sample)
-    centre = wp.vec2f(scene.incircles[t][0], scene.incircles[t][1])
+    centre = incentre_of(scene, t)
     smallest = parameters.numbers[1]
     depth = depth_in_chain(p, -centre, radius, smallest)
-    depth = wp.max(depth, depth_in_chain(p, scene.sides[t, 0] - centre, radius, smallest))
-    depth = wp.max(depth, depth_in_chain(p, scene.sides[t, 1] - centre, radius, smallest))
+    depth = wp.max(depth, depth_in_chain(p, side_of(scene, t, 0) - centre, radius, smallest))
+    depth = wp.max(depth, depth_in_chain(p, side_of(scene, t, 1) - centre, radius, smallest))
     ink = Ink()
-    ink.color = scene.colors[t]
+    ink.color = color_of(scene, t)
     ink.opacity = 1.0
     depth -= 0.5 * parameters.numbers[0]
     ink.coverage = coverage_of(depth, sample.extent)
-    ink.calm = depth - 0.5 * sample.extent
     return ink
 
 

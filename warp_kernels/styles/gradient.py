@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 
 import warp as wp
 
-from warp_kernels.scene import Ink, Numbers, Sample, Scene, StyleParameters, full_ink
+from warp_kernels.scene import Ink, Numbers, Sample, Scene, StyleParameters, color_of, full_ink, side_of
 from warp_kernels.styles.style import Style
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
@@ -14,10 +14,10 @@ wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 @wp.func
 def prepare_gradient(scene: Scene, parameters: StyleParameters, triangle: int) -> Numbers:
     """Linear colour from corner 0, the centroid, and whether the colour is curved."""
-    centre = (scene.sides[triangle, 0] + scene.sides[triangle, 1]) / 3.0
+    centre = (side_of(scene, triangle, 0) + side_of(scene, triangle, 1)) / 3.0
     right = scene.gradients[triangle, 0]
     down = scene.gradients[triangle, 1]
-    start = scene.colors[triangle] - centre[0] * right - centre[1] * down
+    start = color_of(scene, triangle) - centre[0] * right - centre[1] * down
     result = Numbers()
     for c in range(3):
         result[c] = start[c]
@@ -27,6 +27,14 @@ def prepare_gradient(scene: Scene, parameters: StyleParameters, triangle: int) -
     result[10] = centre[1]
     result[11] = float(scene.curved[0])
     return result
+
+
+@wp.func
+def curvature_of(scene: Scene, triangle: int, number: int) -> wp.vec3f:
+    """A term of a quadratic colour, see `Scene`."""
+    red = scene.curvatures[triangle, number, 0]
+    green = scene.curvatures[triangle, number, 1]
+    return wp.vec3f(red, green, scene.curvatures[triangle, number, 2])
 
 
 @wp.func
@@ -44,9 +52,9 @@ def gradient_color(
     )
     if n[11] != 0.0:
         away = at - wp.vec2f(n[9], n[10])
-        bent = away[0] * scene.curvatures[t, 1] + away[1] * scene.curvatures[t, 2]
-        color += scene.curvatures[t, 0] + away[0] * bent
-        color += away[1] * away[1] * scene.curvatures[t, 3]
+        bent = away[0] * curvature_of(scene, t, 1) + away[1] * curvature_of(scene, t, 2)
+        color += curvature_of(scene, t, 0) + away[0] * bent
+        color += away[1] * away[1] * curvature_of(scene, t, 3)
     red = wp.clamp(color[0], 0.0, 255.0)
     green = wp.clamp(color[1], 0.0, 255.0)
     return full_ink(wp.vec3f(red, green, wp.clamp(color[2], 0.0, 255.0)))

@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 import warp as wp
 
 from warp_kernels.errors import OptionError, TrimotionError
-from warp_kernels.scene import Ink, Numbers, Sample, Scene, StyleParameters, full_ink
+from warp_kernels.scene import Ink, Numbers, Sample, Scene, StyleParameters, color_of, full_ink, side_of
 from warp_kernels.styles.pictures import PICTURES
 from warp_kernels.styles.style import ReadPicture, Style
 from warp_kernels.texture import Texture as Texels
@@ -18,7 +18,7 @@ wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 @wp.func
 def ground_below(scene: Scene, sample: Sample, below: wp.vec4f) -> wp.vec3f:
     """What lies below, and the triangle's mean colour where that is transparent."""
-    color = scene.colors[sample.triangle]
+    color = color_of(scene, sample.triangle)
     return color + below[3] * (wp.vec3f(below[0], below[1], below[2]) - color)
 
 
@@ -33,8 +33,8 @@ def relit(color: wp.vec3f, brightness: float) -> wp.vec3f:
 @wp.func
 def prepare_texture(scene: Scene, parameters: StyleParameters, triangle: int) -> Numbers:
     """Change of the position in the picture per px, to the left and upwards, and the detail."""
-    first = scene.sides[triangle, 0]
-    second = scene.sides[triangle, 1]
+    first = side_of(scene, triangle, 0)
+    second = side_of(scene, triangle, 1)
     area = wp.max(wp.abs(first[0] * second[1] - first[1] * second[0]), 1.0e-6)
     up = wp.vec2f(-first[1], first[0]) / area
     left = wp.vec2f(second[1], -second[0]) / area + 0.5 * up

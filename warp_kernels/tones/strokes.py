@@ -6,7 +6,7 @@ The style hands over these numbers, in this order, and colours as light: squares
 import warp as wp
 
 from warp_kernels.blend import to_code, to_light
-from warp_kernels.scene import Ink, Numbers, Sample, Scene, StyleParameters, full_ink
+from warp_kernels.scene import Ink, Numbers, Sample, Scene, StyleParameters, color_of, full_ink, side_of
 from warp_kernels.texture import LINE
 from warp_kernels.tones.lookup import STEPS, ink_at, level_for, pair_of
 from warp_kernels.tones.tonal_art_map import DARKEST
@@ -126,12 +126,12 @@ def base_edge(scene: Scene, triangle: int) -> wp.vec2f:
     Source: Lawonn & Guenther, Stylized Image Triangulation (2018), Sec. 5: randomly chosen; Sec.
         3.5: users turn it, which turns the row of corners here.
     """
-    edge = scene.sides[triangle, 0]
+    edge = side_of(scene, triangle, 0)
     choice = (scene.hashes[triangle] >> wp.uint32(24)) % wp.uint32(3)
     if choice == wp.uint32(1):
-        edge = scene.sides[triangle, 1] - scene.sides[triangle, 0]
+        edge = side_of(scene, triangle, 1) - side_of(scene, triangle, 0)
     if choice == wp.uint32(2):
-        edge = -scene.sides[triangle, 1]
+        edge = -side_of(scene, triangle, 1)
     return edge / wp.max(wp.length(edge), 1.0e-6)
 
 
@@ -155,7 +155,7 @@ def prepare_strokes(scene: Scene, parameters: StyleParameters, triangle: int) ->
     base edge turns a little.
     """
     n = parameters.numbers
-    coloring = coloring_of(n, scene.colors[triangle])
+    coloring = coloring_of(n, color_of(scene, triangle))
     pair = pair_of(coloring.amount)
     level = level_for(n[TEXELS] * scene.pixel * SHARPNESS, parameters.level_count)
     table = scene.levels[parameters.first_level + level]
@@ -164,7 +164,7 @@ def prepare_strokes(scene: Scene, parameters: StyleParameters, triangle: int) ->
     steps = n[TEXELS] * wp.static(float(STEPS)) / float(1 << level)
     across = steps * (edge[0] * n[COSINE] - edge[1] * n[SINE])
     down = steps * (edge[0] * n[SINE] + edge[1] * n[COSINE])
-    centre = (scene.sides[triangle, 0] + scene.sides[triangle, 1]) / 3.0
+    centre = (side_of(scene, triangle, 0) + side_of(scene, triangle, 1)) / 3.0
     place = float(side * STEPS) * place_of_centre(scene, triangle, n[SEED])
     half = wp.static(0.5 * STEPS)
     result = Numbers()
