@@ -76,6 +76,8 @@ class Canvas:
         width, height = self.picture
         step = step_for(self.picture, self.output)
         size = (-(-height // step), -(-width // step)) if needs_source else (1, 1)
+        across, down = self._scale
+        sample_size = (FIXED / (across * self.samples), FIXED / (down * self.samples))
         return {
             "curved": self._curved,
             "source": self.device.empty(size, wp.vec3ub),
@@ -85,15 +87,14 @@ class Canvas:
             "columns": self._filled(centres(width, self.output[0]), int),
             "rows": self._filled(centres(height, self.output[1]), int),
             "pixel": float(np.sqrt((0.5 / np.square(self._scale)).sum())),
-            "parts": self._filled(parts_of_a_pixel(self.samples), float),
-            "sample_size": wp.vec2f(*(FIXED / (scale * self.samples) for scale in self._scale)),
+            "parts": self._filled(parts_of_a_pixel(self.samples, sample_size), int),
         }
 
     def _parameters_of(self, styles: tuple[Style, ...], textures: list[Texture | None]) -> wp.array:
         """What the styles were asked for; their textures become a part of the scene."""
         texels, levels, ranges = pack(textures)
         self._steady["texels"] = self._filled(texels, wp.uint8)
-        self._steady["levels"] = self._filled(levels, wp.vec4i)
+        self._steady["levels"] = self._filled(levels, int)
         packed = np.zeros(max(1, len(styles)), dtype=StyleParameters.numpy_dtype())
         packed["row"] = np.arange(len(packed))
         packed["mask"] = np.arange(len(packed)) - (len(styles) - self._masked)
@@ -276,8 +277,7 @@ class Canvas:
 
     def _filled(self, values: np.ndarray, dtype: Any) -> wp.array:
         """A device array of given values."""
-        shape = values.shape if dtype is float else len(values)
-        array = self.device.empty(shape, dtype)
+        array = self.device.empty(values.shape if dtype is int else len(values), dtype)
         self.device.write(array, values)
         return array
 

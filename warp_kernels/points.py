@@ -25,30 +25,32 @@ ROOM = 2 * STRETCH
 LANES = 16
 """Behind the last point some spare ones make the list a whole multiple of so many long: as many
 numbers as fit into a processor's register."""
-PIXEL, TRIANGLE, PART = 0, ROOM, 2 * ROOM
+PIXEL, TRIANGLE, RIGHT, DOWN, COUNT = 0, ROOM, 2 * ROOM, 3 * ROOM, 4 * ROOM
 """Where in a list they are: for every point the pixel to which it belongs, counted from the first
-of the stretch, the triangle in which it lies, and the pixel's samples for which it stands, as bits,
-sample 0 the lowest."""
-LIST = 3 * ROOM
+of the stretch, the triangle in which it lies, its place from the pixel's centre [2^-16 px] and the
+number of the pixel's samples for which it stands."""
+LIST = 5 * ROOM
 """Numbers of a list."""
 
 
-def parts_of_a_pixel(samples: int) -> np.ndarray:
+def parts_of_a_pixel(samples: int, size: tuple[float, float]) -> np.ndarray:
     """What every set of a pixel's samples is, by the set as bits, sample 0 the lowest.
 
     Args:
         samples: Samples of a pixel, across and down each.
+        size: Width and height of a sample [2^-16 px].
 
     Returns:
-        `Scene.parts`, [2^(samples^2), 3]: number of samples and their middle from the centre of
-        the pixel, right and down [samples].
+        `Scene.parts`, [2^(samples^2), 3]: their middle from the centre of the pixel, right and
+        down [2^-16 px], and the number of samples.
     """
     sets = np.arange(1 << samples**2)
     bits = (sets[:, None] >> np.arange(samples**2)) & 1
     counts = bits.sum(axis=1)
     down, right = np.divmod(np.arange(samples**2), samples) - np.array([[(samples - 1) / 2]])
     middles = bits @ np.stack([right, down], axis=1) / np.maximum(counts, 1)[:, None]
-    return np.column_stack([counts, middles])
+    steps = np.rint(np.float32(middles) * np.float32(size))
+    return np.column_stack([steps, counts]).astype(np.int64)
 
 
 _SAMPLES_IN = """
@@ -94,35 +96,44 @@ _LIST_POINTS = """
     const int* __restrict const first = (const int*)line + SIDE * column;
     int* __restrict const pixel = (int*)list_out + PIXEL;
     int* __restrict const triangle_of = (int*)list_out + TRIANGLE;
-    int* __restrict const part = (int*)list_out + PART;
+    int* __restrict const right = (int*)list_out + RIGHT;
+    int* __restrict const down = (int*)list_out + DOWN;
+    int* __restrict const count = (int*)list_out + COUNT;
     auto samples_in = [&](const int* at, int triangle) { SAMPLES_IN return found; };
     auto whole_pixels = [&](const int* at, int k) { WHOLE_PIXELS };
     for (int k = 0; k < begin; ++k) {
         pixel[k] = k;
         triangle_of[k] = first[SIDE * k];
-        part[k] = every;
+        right[k] = down[k] = 0;
+        count[k] = SIDE * SIDE;
     }
+    auto stand_for = [&](int point, int samples) {
+        const int* const part = (const int*)parts + 3 * samples;
+        right[point] = part[0];
+        down[point] = part[1];
+        count[point] = part[2];
+        return samples;
+    };
     int end = begin, k = 0;
     while (k < begin && end + SIDE * SIDE <= ROOM) {
         const int* const at = first + SIDE * k;
         const int whole = whole_pixels(at, k);
         k += whole;
         if (whole) continue;
-        int left = every ^ (part[k] = samples_in(at, triangle_of[k]));
+        int left = every ^ stand_for(k, samples_in(at, triangle_of[k]));
         for (int sample = 0; left; ++sample) {
             if (!(left >> sample & 1)) continue;
             const int other = at[sample / SIDE * width + sample % SIDE];
             pixel[end] = k;
             triangle_of[end] = other;
-            part[end] = left & samples_in(at, other);
-            left ^= part[end++];
+            left ^= stand_for(end++, left & samples_in(at, other));
         }
         ++k;
     }
     for (int spare = end; spare % LANES; ++spare) {
         pixel[spare] = 0;
         triangle_of[spare] = *first;
-        part[spare] = every;
+        stand_for(spare, every);
     }
     return wp::vec_t<3, int>(k, begin, end);
 """
@@ -144,13 +155,20 @@ def point_lister(samples: int) -> Any:
         "LANES": LANES,
         "PIXEL": PIXEL,
         "TRIANGLE": TRIANGLE,
-        "PART": PART,
+        "RIGHT": RIGHT,
+        "DOWN": DOWN,
+        "COUNT": COUNT,
     }
     declared = "".join(f"constexpr int {name} = {value};\n" for name, value in constants.items())
 
     @wp.func_native(declared + snippet)
     def list_points(
-        line: wp.uint64, width: int, column: int, most: int, list_out: wp.uint64
+        line: wp.uint64,
+        width: int,
+        column: int,
+        most: int,
+        parts: wp.uint64,
+        list_out: wp.uint64,
     ) -> wp.vec3i:
         """List them; on the way pixels within one triangle are skipped in runs.
 
@@ -159,6 +177,7 @@ def point_lister(samples: int) -> Any:
             width: Samples in a row.
             column: The first pixel.
             most: Pixels to the end of the row.
+            parts: Address of `Scene.parts`.
             list_out: Address of the list, LIST numbers.
 
         Returns:

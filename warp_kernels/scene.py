@@ -74,18 +74,16 @@ class Scene:
     """Rows of a mask."""
     texels: wp.array(dtype=wp.uint8)
     """The textures of all styles; see `texture`."""
-    levels: wp.array(dtype=wp.vec4i)
-    """Begin in `texels`, images, rows and columns of every level of every texture, [L]."""
+    levels: wp.array2d(dtype=int)
+    """Begin in `texels`, images, rows and columns of every level of every texture, [L, 4]."""
     columns: wp.array(dtype=int)
     """Place of the centre of every output column [2^-16 px], [columns]."""
     rows: wp.array(dtype=int)
     """The same of every output row, [rows]."""
     pixel: float
     """Size of an output pixel [px of the picture]."""
-    parts: wp.array2d(dtype=float)
-    """Every set of samples of a pixel, see `points.parts_of_a_pixel`, [sets, 4]."""
-    sample_size: wp.vec2f
-    """Width and height of the parts of an output pixel that are told apart [2^-16 px]."""
+    parts: wp.array2d(dtype=int)
+    """Every set of samples of a pixel, see `points.parts_of_a_pixel`, [sets, 3]."""
 
 
 @wp.struct
@@ -173,23 +171,20 @@ def offset_of(place: wp.vec2i, anchor: wp.vec2i) -> wp.vec2f:
 
 
 @wp.func
-def sample_at(scene: Scene, triangle: int, middle: wp.vec2i, part: int, samples: int) -> Sample:
+def sample_at(scene: Scene, triangle: int, place: wp.vec2i, share: float, samples: int) -> Sample:
     """The point of a pixel that stands for those of its samples that lie in one triangle.
 
     Args:
-        scene: Knows where the triangle lies and what the sets of samples are.
+        scene: Knows where the triangle lies.
         triangle: The triangle.
-        middle: Place of the centre of the pixel [2^-16 px].
-        part: The samples, as bits.
+        place: Place of the point [2^-16 px].
+        share: Part of the pixel for which it stands.
         samples: Samples of a pixel, across and down each.
     """
-    least = 1.0 / float(samples)
-    right = int(wp.rint(scene.parts[part, 1] * scene.sample_size[0]))
-    down = int(wp.rint(scene.parts[part, 2] * scene.sample_size[1]))
     here = Sample()
     here.triangle = triangle
-    here.place = wp.vec2i(middle[0] + right, middle[1] + down)
-    here.offset = offset_of(here.place, scene.anchors[triangle])
+    here.place = place
+    here.offset = offset_of(place, scene.anchors[triangle])
     # as wide as a strip of so many samples beside the border
-    here.extent = scene.pixel * wp.max(scene.parts[part, 0] * (least * least), least)
+    here.extent = scene.pixel * wp.max(share, 1.0 / float(samples))
     return here

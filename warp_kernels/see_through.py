@@ -65,10 +65,11 @@ def see_through(color_at: Any, samples: int) -> Any:
             triangle = line[(k / wp.static(samples)) * width + first + k % wp.static(samples)]
             own = wp.where(by_sample, left & -left, left & samples_in(line, first, triangle))
             left = left ^ own
-            here = sample_at(scene, triangle, middle, own, wp.static(samples))
+            share = float(scene.parts[own, 2]) * wp.static(1.0 / samples**2)
+            place = middle + wp.vec2i(scene.parts[own, 0], scene.parts[own, 1])
+            here = sample_at(scene, triangle, place, share, wp.static(samples))
             here.row = row
             here.column = column
-            share = scene.parts[own, 0] * wp.static(1.0 / samples**2)
             found = look(scene, parameters, layers, here)
             seen.color += share * found.color
             seen.opacity += share * found.opacity

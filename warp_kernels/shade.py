@@ -18,7 +18,17 @@ import warp as wp
 from warp_kernels.blend import Coat, stack_of
 from warp_kernels.device import Device, Phase
 from warp_kernels.layers import LayerTables
-from warp_kernels.points import LANES, LIST, PART, PIXEL, ROOM, TRIANGLE, point_lister
+from warp_kernels.points import (
+    COUNT,
+    DOWN,
+    LANES,
+    LIST,
+    PIXEL,
+    RIGHT,
+    ROOM,
+    TRIANGLE,
+    point_lister,
+)
 from warp_kernels.scene import Sample, Scene, StyleParameters, sample_at
 from warp_kernels.see_through import see_through
 
@@ -90,7 +100,7 @@ def _stretch_drawer(coats: tuple[Coat, ...], samples: int, fades: bool) -> Any:
         """Draw the pixels from a column on, as many as make a stretch: their number."""
         width = line.shape[0] / wp.static(samples)
         columns = scene.columns.shape[0]
-        found = list_points(line.ptr, width, column, columns - column, points.ptr)
+        found = list_points(line.ptr, width, column, columns - column, scene.parts.ptr, points.ptr)
         red = Values()
         green = Values()
         blue = Values()
@@ -100,18 +110,19 @@ def _stretch_drawer(coats: tuple[Coat, ...], samples: int, fades: bool) -> Any:
         end = (found[2] + wp.static(LANES - 1)) & wp.static(-LANES)
         while j < end:
             at = column + points[wp.static(PIXEL) + j]
-            part = points[wp.static(PART) + j]
-            middle = wp.vec2i(scene.columns[at], y)
+            x = scene.columns[at] + points[wp.static(RIGHT) + j]
+            place = wp.vec2i(x, y + points[wp.static(DOWN) + j])
+            share = float(points[wp.static(COUNT) + j]) * wp.static(1.0 / samples**2)
             triangle = points[wp.static(TRIANGLE) + j]
-            here = sample_at(scene, triangle, middle, part, wp.static(samples))
+            here = sample_at(scene, triangle, place, share, wp.static(samples))
             here.row = row
             here.column = at
             color = color_at(scene, parameters, here)
-            share = scene.parts[part, 0] * wp.static(1.0 / samples**2)
             red[j] = share * (color[3] * color[0])
             green[j] = share * (color[3] * color[1])
             blue[j] = share * (color[3] * color[2])
-            opacity[j] = share * color[3]
+            if wp.static(not is_opaque):
+                opacity[j] = share * color[3]
             j += 1
         j = found[1]
         while j < found[2]:
@@ -119,7 +130,8 @@ def _stretch_drawer(coats: tuple[Coat, ...], samples: int, fades: bool) -> Any:
             red[k] += red[j]
             green[k] += green[j]
             blue[k] += blue[j]
-            opacity[k] += opacity[j]
+            if wp.static(not is_opaque):
+                opacity[k] += opacity[j]
             j += 1
         if wp.static(fades):
             j = int(0)

@@ -7,7 +7,7 @@ import warp as wp
 
 from warp_kernels.blend import to_code, to_light
 from warp_kernels.scene import Ink, Numbers, Sample, Scene, StyleParameters, color_of, full_ink, side_of
-from warp_kernels.texture import LINE
+from warp_kernels.texture import LINE, level_of
 from warp_kernels.tones.lookup import STEPS, ink_at, level_for, pair_of
 from warp_kernels.tones.tonal_art_map import DARKEST
 
@@ -158,7 +158,7 @@ def prepare_strokes(scene: Scene, parameters: StyleParameters, triangle: int) ->
     coloring = coloring_of(n, color_of(scene, triangle))
     pair = pair_of(coloring.amount)
     level = level_for(n[TEXELS] * scene.pixel * SHARPNESS, parameters.level_count)
-    table = scene.levels[parameters.first_level + level]
+    table = level_of(scene, parameters.first_level + level)
     side = table[2]
     edge = base_edge(scene, triangle)
     steps = n[TEXELS] * wp.static(float(STEPS)) / float(1 << level)
