@@ -67,6 +67,7 @@ class Canvas:
         is_opaque = any(coat.is_opaque for coat in self._coats)
         self._pixels = device.empty((height, width, 3 if is_opaque else 4), wp.uint8)
         self._curved = device.empty(1, int)
+        self._count = device.empty(1, int)
         self._steady = self._steady_scene(needs_source=any(s.needs_source for s in styles))
         self._parameters = self._parameters_of(styles, textures)
         self._allocate(vertices=512, triangles=1024, layers=1024, links=1)
@@ -138,6 +139,7 @@ class Canvas:
             self._write_layers(layers)
         self.device.write(self._vertices, vertices)
         self.device.write(self._triangles, triangles)
+        self.device.write(self._count, np.array([len(triangles)]))
         self._write_paint(paint, shapes=not self._is_even or layers is not None)
         if source is not None and self._steady["source"].size > 1:
             self.device.write(self._steady["source"], reduced(source, self._steady["source_step"]))
@@ -147,8 +149,9 @@ class Canvas:
             preparing.resize(len(paint.colors))
         phases = list(self._preparing)
         for top, filling, shading in self._bands(fades=layers is not None):
-            filling.resize(len(triangles))
-            shading.resize(min(self._band, self.output[1] - top))
+            rows = min(self._band, self.output[1] - top)
+            filling.resize(rows, threads=len(triangles))
+            shading.resize(rows)
             phases += [filling, shading]
         self.device.run(phases)
         return self.device.read(self._pixels, self.output[1])
@@ -253,8 +256,10 @@ class Canvas:
             self.device,
             vertices=self._vertices,
             triangles=self._triangles,
+            count=self._count,
             scale=(scale[0] * self.samples, scale[1] * self.samples),
             first_row=top * self.samples,
+            samples=self.samples,
             triangle_out=self._triangle_of,
         )
         shading = record_shade(

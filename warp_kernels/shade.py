@@ -226,4 +226,5 @@ def record_shade(
             with straight alpha.
     """
     inputs = [scene, parameters, layers, triangle_of, top]
-    return device.record(_shade_kernel(coats, samples, fades), inputs, [points_out, canvas_out])
+    kernel = _shade_kernel(coats, samples, fades)
+    return device.record(kernel, inputs, [points_out, canvas_out], flows_on=True)
