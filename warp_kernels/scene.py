@@ -117,16 +117,34 @@ class Ink:
     """Part of the point that is inked at all, 0 to 1; mixes light, as the eye does."""
 
 
+# What follows reads tables as plain ones of single numbers. The compiler looks many points up at a
+# time if it knows the strides, and if no vector is read as a whole: that is two numbers in one.
+
+
 @wp.func
 def color_of(scene: Scene, triangle: int) -> wp.vec3f:
-    """Mean colour of a triangle [code values].
+    """Mean colour of a triangle [code values]."""
+    table = wp.array(ptr=scene.colors.ptr, shape=(3 * scene.colors.shape[0],), dtype=float)
+    return wp.vec3f(table[3 * triangle], table[3 * triangle + 1], table[3 * triangle + 2])
 
-    Read number by number, as are sides: a vector that is read as a whole is two numbers in one to
-    the compiler, which then does not take several points at a time.
-    """
-    return wp.vec3f(
-        scene.colors[triangle, 0], scene.colors[triangle, 1], scene.colors[triangle, 2]
-    )
+
+@wp.func
+def anchor_of(scene: Scene, triangle: int) -> wp.vec2i:
+    """Place of a triangle's corner 0 [2^-16 px]."""
+    table = wp.array(ptr=scene.anchors.ptr, shape=(2 * scene.anchors.shape[0],), dtype=int)
+    return wp.vec2i(table[2 * triangle], table[2 * triangle + 1])
+
+
+@wp.func
+def prepared_for(scene: Scene, parameters: StyleParameters, triangle: int) -> Numbers:
+    """What a style worked out about a triangle."""
+    triangles = scene.prepared.shape[1]
+    first = wp.uint64(64 * triangles) * wp.uint64(parameters.row)
+    table = wp.array(ptr=scene.prepared.ptr + first, shape=(16 * triangles,), dtype=float)
+    result = Numbers()
+    for i in range(16):
+        result[i] = table[16 * triangle + i]
+    return result
 
 
 @wp.func
@@ -184,7 +202,7 @@ def sample_at(scene: Scene, triangle: int, place: wp.vec2i, share: float, sample
     here = Sample()
     here.triangle = triangle
     here.place = place
-    here.offset = offset_of(place, scene.anchors[triangle])
+    here.offset = offset_of(place, anchor_of(scene, triangle))
     # as wide as a strip of so many samples beside the border
     here.extent = scene.pixel * wp.max(share, 1.0 / float(samples))
     return here

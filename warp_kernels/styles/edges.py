@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 
 import warp as wp
 
-from warp_kernels.scene import Ink, Numbers, Sample, Scene, StyleParameters, side_of
+from warp_kernels.scene import Ink, Numbers, Sample, Scene, StyleParameters, prepared_for, side_of
 from warp_kernels.styles.color import parse_color
 from warp_kernels.styles.style import Style
 from warp_kernels.triangle_frame import line_coverage, smooth_rise
@@ -44,7 +44,7 @@ def edge_color(scene: Scene, parameters: StyleParameters, sample: Sample, below:
 
     Only the triangle's own sides are looked at: whatever lies outside lies behind one of them.
     """
-    n = scene.prepared[parameters.row, sample.triangle]
+    n = prepared_for(scene, parameters, sample.triangle)
     x = sample.offset[0]
     y = sample.offset[1]
     half_width = parameters.numbers[3]

@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 
 import warp as wp
 
-from warp_kernels.scene import Ink, Numbers, Sample, Scene, StyleParameters, color_of, full_ink, side_of
+from warp_kernels.scene import Ink, Numbers, Sample, Scene, StyleParameters, color_of, full_ink, prepared_for, side_of
 from warp_kernels.styles.style import Style
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
@@ -43,7 +43,7 @@ def gradient_color(
 ) -> Ink:
     """The best linear or quadratic colour at the sample, within the range of code values."""
     t = sample.triangle
-    n = scene.prepared[parameters.row, t]
+    n = prepared_for(scene, parameters, t)
     at = sample.offset
     color = wp.vec3f(
         n[0] + at[0] * n[3] + at[1] * n[6],

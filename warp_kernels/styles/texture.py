@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 import warp as wp
 
 from warp_kernels.errors import OptionError, TrimotionError
-from warp_kernels.scene import Ink, Numbers, Sample, Scene, StyleParameters, color_of, full_ink, side_of
+from warp_kernels.scene import Ink, Numbers, Sample, Scene, StyleParameters, color_of, full_ink, prepared_for, side_of
 from warp_kernels.styles.pictures import PICTURES
 from warp_kernels.styles.style import ReadPicture, Style
 from warp_kernels.texture import Texture as Texels
@@ -52,7 +52,7 @@ def textured_color(
     scene: Scene, parameters: StyleParameters, sample: Sample, below: wp.vec4f
 ) -> Ink:
     """What lies below, relit by the texture; the picture's lower edge is the base edge."""
-    n = scene.prepared[parameters.row, sample.triangle]
+    n = prepared_for(scene, parameters, sample.triangle)
     left = n[0] * sample.offset[0] + n[1] * sample.offset[1]
     up = n[2] * sample.offset[0] + n[3] * sample.offset[1]
     value = texture_at(scene, parameters, 0, wp.vec2f(1.0 - left, 1.0 - up), n[4], False)

@@ -6,7 +6,7 @@ The style hands over these numbers, in this order, and colours as light: squares
 import warp as wp
 
 from warp_kernels.blend import to_code, to_light
-from warp_kernels.scene import Ink, Numbers, Sample, Scene, StyleParameters, color_of, full_ink, side_of
+from warp_kernels.scene import Ink, Numbers, Sample, Scene, StyleParameters, color_of, full_ink, prepared_for, side_of
 from warp_kernels.texture import LINE, level_of
 from warp_kernels.tones.lookup import STEPS, ink_at, level_for, pair_of
 from warp_kernels.tones.tonal_art_map import DARKEST
@@ -194,7 +194,7 @@ def strokes_on_paper(
     scene: Scene, parameters: StyleParameters, sample: Sample, below: wp.vec4f
 ) -> Ink:
     """Strokes and the paper that they are drawn on."""
-    n = scene.prepared[parameters.row, sample.triangle]
+    n = prepared_for(scene, parameters, sample.triangle)
     paper = three(n, PAPER)
     covered = covered_at(scene, n, sample.offset)
     return full_ink(to_code(paper + covered * (three(n, PEN) - paper)))
@@ -205,7 +205,7 @@ def strokes_alone(
     scene: Scene, parameters: StyleParameters, sample: Sample, below: wp.vec4f
 ) -> Ink:
     """Strokes on what lies below."""
-    n = scene.prepared[parameters.row, sample.triangle]
+    n = prepared_for(scene, parameters, sample.triangle)
     ink = Ink()
     ink.color = to_code(three(n, PEN))
     ink.opacity = 1.0
