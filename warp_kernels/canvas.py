@@ -24,8 +24,8 @@ from warp_kernels.texture import Texture, pack
 SAMPLES = 3
 """Samples per output pixel, across and down each; fewer where the sample grid would exceed what
 coverage can count, see `raster.MAX_SIDE`."""
-BAND_SAMPLES = 1 << 19
-"""Samples of a band, for which triangles are found before they are shaded: 2 MB stay in cache."""
+BAND_SAMPLES = 1 << 18
+"""Samples of a band, for which triangles are found before they are shaded: 1 MB stays in cache."""
 
 
 class Canvas:

@@ -189,20 +189,22 @@ def offset_of(place: wp.vec2i, anchor: wp.vec2i) -> wp.vec2f:
 
 
 @wp.func
-def sample_at(scene: Scene, triangle: int, place: wp.vec2i, share: float, samples: int) -> Sample:
-    """The point of a pixel that stands for those of its samples that lie in one triangle.
-
-    Args:
-        scene: Knows where the triangle lies.
-        triangle: The triangle.
-        place: Place of the point [2^-16 px].
-        share: Part of the pixel for which it stands.
-        samples: Samples of a pixel, across and down each.
-    """
+def sample_at(scene: Scene, triangle: int, place: wp.vec2i) -> Sample:
+    """A point of a triangle at a place [2^-16 px]."""
     here = Sample()
     here.triangle = triangle
     here.place = place
     here.offset = offset_of(place, anchor_of(scene, triangle))
-    # as wide as a strip of so many samples beside the border
-    here.extent = scene.pixel * wp.max(share, 1.0 / float(samples))
     return here
+
+
+@wp.func
+def extent_of(scene: Scene, share: float, samples: int) -> float:
+    """Side of what a part of a pixel is: as wide as a strip of so many samples beside a border.
+
+    Args:
+        scene: Knows the size of a pixel.
+        share: The part, of a pixel.
+        samples: Samples of a pixel, across and down each.
+    """
+    return scene.pixel * wp.max(share, 1.0 / float(samples))

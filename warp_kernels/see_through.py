@@ -10,7 +10,7 @@ from typing import Any
 import warp as wp
 
 from warp_kernels.layers import LayerTables, Seen, fading_look
-from warp_kernels.scene import FAR, Sample, Scene, StyleParameters, sample_at
+from warp_kernels.scene import FAR, Scene, StyleParameters, extent_of, sample_at
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 
@@ -67,7 +67,8 @@ def see_through(color_at: Any, samples: int) -> Any:
             left = left ^ own
             share = float(scene.parts[own, 2]) * wp.static(1.0 / samples**2)
             place = middle + wp.vec2i(scene.parts[own, 0], scene.parts[own, 1])
-            here = sample_at(scene, triangle, place, share, wp.static(samples))
+            here = sample_at(scene, triangle, place)
+            here.extent = extent_of(scene, share, wp.static(samples))
             here.row = row
             here.column = column
             found = look(scene, parameters, layers, here)

@@ -29,14 +29,17 @@ from warp_kernels.points import (
     TRIANGLE,
     point_lister,
 )
-from warp_kernels.scene import Sample, Scene, StyleParameters, sample_at
+from warp_kernels.scene import Sample, Scene, StyleParameters, extent_of, sample_at
 from warp_kernels.see_through import see_through
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 
-FLAGS = "-march=native -mprefer-vector-width=512 -mllvm=-inline-threshold=9000"
-"""How a shader is compiled for a CPU: whole registers, square roots for many points at a time, and
-one program of all the functions that a stack is made of."""
+SHADE_OPTIONS = {
+    "enable_backward": False,
+    "fuse_fp": False,
+    "cpu_compiler_flags": "-march=native -mprefer-vector-width=512 -mllvm=-inline-threshold=9000",
+}
+"""The widest registers that there are, and one program of all functions that a stack is made of."""
 
 Values = wp.types.vector(length=ROOM, dtype=wp.float32)
 
@@ -48,43 +51,75 @@ def code_value(value: float) -> wp.uint8:
 
 
 @wp.func
-def write_opaque(
-    red: Values, green: Values, blue: Values, opacity: Values, count: int, address: wp.uint64
+def store_opaque(
+    out: wp.array(dtype=wp.uint8), k: int, red: float, green: float, blue: float, opacity: float
 ):
-    """Write pixels through which nothing shows."""
-    out = wp.array(ptr=address, shape=(3 * count,), dtype=wp.uint8)
-    k = int(0)
-    while k < count:
-        out[3 * k] = code_value(red[k])
-        out[3 * k + 1] = code_value(green[k])
-        out[3 * k + 2] = code_value(blue[k])
-        k += 1
+    """Write a pixel through which nothing shows."""
+    out[3 * k] = code_value(red)
+    out[3 * k + 1] = code_value(green)
+    out[3 * k + 2] = code_value(blue)
 
 
 @wp.func
-def write_transparent(
-    red: Values, green: Values, blue: Values, opacity: Values, count: int, address: wp.uint64
+def store_transparent(
+    out: wp.array(dtype=wp.uint8), k: int, red: float, green: float, blue: float, opacity: float
 ):
-    """Write pixels with straight alpha."""
-    out = wp.array(ptr=address, shape=(4 * count,), dtype=wp.uint8)
-    k = int(0)
-    while k < count:
-        whole = wp.max(opacity[k], 1.0e-6)
-        out[4 * k] = code_value(red[k] / whole)
-        out[4 * k + 1] = code_value(green[k] / whole)
-        out[4 * k + 2] = code_value(blue[k] / whole)
-        out[4 * k + 3] = code_value(255.0 * opacity[k])
-        k += 1
+    """Write a pixel with straight alpha."""
+    whole = wp.max(opacity, 1.0e-6)
+    out[4 * k] = code_value(red / whole)
+    out[4 * k + 1] = code_value(green / whole)
+    out[4 * k + 2] = code_value(blue / whole)
+    out[4 * k + 3] = code_value(255.0 * opacity)
+
+
+@cache
+def _faded_drawer(color_at: Any, samples: int, store: Any) -> Any:
+    """A wp.func that draws those pixels of a stretch anew that something shows through."""
+    look_through = see_through(color_at, samples)
+
+    @wp.func
+    def draw_faded(
+        scene: Scene,
+        parameters: wp.array(dtype=StyleParameters),
+        layers: LayerTables,
+        line: wp.array(dtype=int),
+        points: wp.array(dtype=int),
+        listed: wp.vec3i,
+        row: int,
+        column: int,
+        out: wp.array(dtype=wp.uint8),
+    ):
+        """Point by point: a pixel on several borders is drawn as often."""
+        for j in range(listed[2]):
+            k = points[wp.static(PIXEL) + j]
+            faded = layers.weights[points[wp.static(TRIANGLE) + j]] < 1.0
+            if faded and k < listed[0]:
+                seen = look_through(scene, parameters, layers, line, row, column + k)
+                color = seen.color
+                store(out, k, color[0], color[1], color[2], seen.opacity)
+
+    return draw_faded
+
+
+@wp.func
+def point_at(scene: Scene, points: wp.array(dtype=int), row: int, column: int, j: int) -> Sample:
+    """A point of a stretch that begins with a column."""
+    at = column + points[wp.static(PIXEL) + j]
+    x = scene.columns[at] + points[wp.static(RIGHT) + j]
+    place = wp.vec2i(x, scene.rows[row] + points[wp.static(DOWN) + j])
+    here = sample_at(scene, points[wp.static(TRIANGLE) + j], place)
+    here.row = row
+    here.column = at
+    return here
 
 
 @cache
 def _stretch_drawer(coats: tuple[Coat, ...], samples: int, fades: bool) -> Any:
     """A wp.func that draws a stretch of a row."""
-    is_opaque = any(coat.is_opaque for coat in coats)
-    channels = 3 if is_opaque else 4
-    write = write_opaque if is_opaque else write_transparent
+    channels = channels_of(coats)
     color_at, list_points = stack_of(coats), point_lister(samples)
-    look_through = see_through(color_at, samples)
+    store = store_opaque if channels == 3 else store_transparent
+    draw_faded = _faded_drawer(color_at, samples, store)
 
     @wp.func
     def draw_stretch(
@@ -95,69 +130,52 @@ def _stretch_drawer(coats: tuple[Coat, ...], samples: int, fades: bool) -> Any:
         points: wp.array(dtype=int),
         row: int,
         column: int,
-        out: wp.uint64,
+        address: wp.uint64,
     ) -> int:
         """Draw the pixels from a column on, as many as make a stretch: their number."""
-        width = line.shape[0] / wp.static(samples)
-        columns = scene.columns.shape[0]
-        found = list_points(line.ptr, width, column, columns - column, scene.parts.ptr, points.ptr)
-        red = Values()
-        green = Values()
-        blue = Values()
-        opacity = Values()
-        y = scene.rows[row]
+        columns, width = scene.columns.shape[0], line.shape[0] / wp.static(samples)
+        parts = scene.parts.ptr
+        listed = list_points(line.ptr, width, column, columns - column, parts, points.ptr)
+        red, green, blue, opacity = Values(), Values(), Values(), Values()
         j = int(0)
-        end = (found[2] + wp.static(LANES - 1)) & wp.static(-LANES)
-        while j < end:
-            at = column + points[wp.static(PIXEL) + j]
-            x = scene.columns[at] + points[wp.static(RIGHT) + j]
-            place = wp.vec2i(x, y + points[wp.static(DOWN) + j])
+        while j < (listed[2] + wp.static(LANES - 1)) & wp.static(-LANES):
             share = float(points[wp.static(COUNT) + j]) * wp.static(1.0 / samples**2)
-            triangle = points[wp.static(TRIANGLE) + j]
-            here = sample_at(scene, triangle, place, share, wp.static(samples))
-            here.row = row
-            here.column = at
+            here = point_at(scene, points, row, column, j)
+            here.extent = extent_of(scene, share, wp.static(samples))
             color = color_at(scene, parameters, here)
             red[j] = share * (color[3] * color[0])
             green[j] = share * (color[3] * color[1])
             blue[j] = share * (color[3] * color[2])
-            if wp.static(not is_opaque):
-                opacity[j] = share * color[3]
+            opacity[j] = share * color[3]
             j += 1
-        j = found[1]
-        while j < found[2]:
+        for j in range(listed[1], listed[2]):
             k = points[wp.static(PIXEL) + j]
             red[k] += red[j]
             green[k] += green[j]
             blue[k] += blue[j]
-            if wp.static(not is_opaque):
-                opacity[k] += opacity[j]
-            j += 1
+            opacity[k] += opacity[j]
+        out = wp.array(ptr=address, shape=(wp.static(channels) * columns,), dtype=wp.uint8)
+        k = int(0)
+        while k < listed[0]:
+            store(out, k, red[k], green[k], blue[k], opacity[k])
+            k += 1
         if wp.static(fades):
-            j = int(0)
-            while j < found[2]:
-                # a pixel that is on several borders is looked at as often
-                if layers.weights[points[wp.static(TRIANGLE) + j]] < 1.0:
-                    k = points[wp.static(PIXEL) + j]
-                    seen = look_through(scene, parameters, layers, line, row, column + k)
-                    red[k] = seen.color[0]
-                    green[k] = seen.color[1]
-                    blue[k] = seen.color[2]
-                    opacity[k] = seen.opacity
-                j += 1
-        first = wp.uint64(row) * wp.uint64(columns) + wp.uint64(column)
-        address = out + first * wp.uint64(wp.static(channels))
-        write(red, green, blue, opacity, found[0], address)
-        return found[0]
+            draw_faded(scene, parameters, layers, line, points, listed, row, column, out)
+        return listed[0]
 
     return draw_stretch
 
 
+def channels_of(coats: tuple[Coat, ...]) -> int:
+    """Numbers of a pixel: 3, or 4 with alpha if no coat is opaque."""
+    return 3 if any(coat.is_opaque for coat in coats) else 4
+
+
 @cache
 def _shade_kernel(coats: tuple[Coat, ...], samples: int, fades: bool) -> Any:
-    draw_stretch = _stretch_drawer(coats, samples, fades)
+    draw_stretch, channels = _stretch_drawer(coats, samples, fades), channels_of(coats)
 
-    @wp.kernel(enable_backward=False, module="unique", module_options={"cpu_compiler_flags": FLAGS})
+    @wp.kernel(module="unique", module_options=SHADE_OPTIONS)
     def shade(
         span: wp.array(dtype=wp.vec2i),
         # In:
@@ -177,9 +195,7 @@ def _shade_kernel(coats: tuple[Coat, ...], samples: int, fades: bool) -> Any:
         # plain arrays of one row: indices are never negative, so the compiler works in blocks
         length = wp.static(samples) * triangle_of.shape[1]
         begin = wp.uint64(band_row) * wp.uint64(4)
-        line = wp.array(
-            ptr=triangle_of.ptr + begin * wp.uint64(length), shape=(length,), dtype=int
-        )
+        line = wp.array(ptr=triangle_of.ptr + begin * wp.uint64(length), shape=(length,), dtype=int)
         points = wp.array(
             ptr=points_out.ptr + begin * wp.uint64(wp.static(LIST)),
             shape=(wp.static(LIST),),
@@ -188,9 +204,9 @@ def _shade_kernel(coats: tuple[Coat, ...], samples: int, fades: bool) -> Any:
         row = top + band_row
         column = int(0)
         while column < canvas_out.shape[1]:
-            column += draw_stretch(
-                scene, parameters, layers, line, points, row, column, canvas_out.ptr
-            )
+            pixel = wp.uint64(row) * wp.uint64(canvas_out.shape[1]) + wp.uint64(column)
+            address = canvas_out.ptr + pixel * wp.uint64(wp.static(channels))
+            column += draw_stretch(scene, parameters, layers, line, points, row, column, address)
 
     return shade
 

@@ -65,8 +65,10 @@ def pack(textures: list[Texture | None]) -> tuple[np.ndarray, np.ndarray, list[t
 def _wrapped(index: int, count: int, repeats: bool) -> int:
     """The index itself, or that of the texel that stands for it beyond the border."""
     if repeats:
-        rest = index % count
-        return wp.where(rest < 0, rest + count, rest)
+        # the processor divides whole numbers one by one, others sixteen at a time
+        rest = index - count * int(wp.floor(float(index) / float(count)))
+        rest = wp.where(rest < 0, rest + count, rest)
+        return wp.where(rest >= count, rest - count, rest)
     return wp.clamp(index, 0, count - 1)
 
 
@@ -118,7 +120,10 @@ def detail_for(scene: Scene, parameters: StyleParameters, footprint: float) -> f
 def level_of(scene: Scene, level: int) -> wp.vec4i:
     """A row of `Scene.levels`."""
     return wp.vec4i(
-        scene.levels[level, 0], scene.levels[level, 1], scene.levels[level, 2], scene.levels[level, 3]
+        scene.levels[level, 0],
+        scene.levels[level, 1],
+        scene.levels[level, 2],
+        scene.levels[level, 3],
     )
 
 

@@ -5,7 +5,17 @@ from typing import Any, ClassVar
 
 import warp as wp
 
-from warp_kernels.scene import Ink, Numbers, Sample, Scene, StyleParameters, color_of, full_ink, prepared_for, side_of
+from warp_kernels.scene import (
+    Ink,
+    Numbers,
+    Sample,
+    Scene,
+    StyleParameters,
+    color_of,
+    full_ink,
+    prepared_for,
+    side_of,
+)
 from warp_kernels.styles.style import Style
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})

@@ -5,7 +5,16 @@ from typing import Any, ClassVar
 
 import warp as wp
 
-from warp_kernels.scene import Ink, Sample, Scene, StyleParameters, color_of, depth_inside, incentre_of, side_of
+from warp_kernels.scene import (
+    Ink,
+    Sample,
+    Scene,
+    StyleParameters,
+    color_of,
+    depth_inside,
+    incentre_of,
+    side_of,
+)
 from warp_kernels.styles.style import Style
 from warp_kernels.triangle_frame import (
     coverage_of,

@@ -6,7 +6,17 @@ from typing import Any, ClassVar
 import warp as wp
 
 from warp_kernels.errors import OptionError, TrimotionError
-from warp_kernels.scene import Ink, Numbers, Sample, Scene, StyleParameters, color_of, full_ink, prepared_for, side_of
+from warp_kernels.scene import (
+    Ink,
+    Numbers,
+    Sample,
+    Scene,
+    StyleParameters,
+    color_of,
+    full_ink,
+    prepared_for,
+    side_of,
+)
 from warp_kernels.styles.pictures import PICTURES
 from warp_kernels.styles.style import ReadPicture, Style
 from warp_kernels.texture import Texture as Texels

@@ -6,7 +6,17 @@ The style hands over these numbers, in this order, and colours as light: squares
 import warp as wp
 
 from warp_kernels.blend import to_code, to_light
-from warp_kernels.scene import Ink, Numbers, Sample, Scene, StyleParameters, color_of, full_ink, prepared_for, side_of
+from warp_kernels.scene import (
+    Ink,
+    Numbers,
+    Sample,
+    Scene,
+    StyleParameters,
+    color_of,
+    full_ink,
+    prepared_for,
+    side_of,
+)
 from warp_kernels.texture import LINE, level_of
 from warp_kernels.tones.lookup import STEPS, ink_at, level_for, pair_of
 from warp_kernels.tones.tonal_art_map import DARKEST
