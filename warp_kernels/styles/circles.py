@@ -29,7 +29,10 @@ def depth_in_chain(p: wp.vec2f, corner: wp.vec2f, radius: float, smallest: float
     sine = wp.min(radius / reach, 0.999)
     factor = (1.0 - sine) / (1.0 + sine)
     towards = corner / reach
-    left = wp.max(reach - wp.dot(p, towards), 1.0e-6)
+    along = wp.dot(p, towards)
+    if along <= radius:
+        return radius - wp.length(p)  # beside the incircle at most: most points are
+    left = wp.max(reach - along, 1.0e-6)
     # between two discs the border lies where they touch: at (1 - sine) of the nearer one's way
     number = wp.ceil(wp.log(left / (reach * (1.0 + sine))) / wp.log(factor)) - 1.0
     size = wp.pow(factor, wp.max(number, 0.0))

@@ -23,7 +23,7 @@ wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 
 @wp.func
 def prepare_gradient(scene: Scene, parameters: StyleParameters, triangle: int) -> Numbers:
-    """Linear colour from corner 0, the centroid, and whether the colour is curved."""
+    """Linear colour from corner 0, and the centroid."""
     centre = (side_of(scene, triangle, 0) + side_of(scene, triangle, 1)) / 3.0
     right = scene.gradients[triangle, 0]
     down = scene.gradients[triangle, 1]
@@ -35,16 +35,16 @@ def prepare_gradient(scene: Scene, parameters: StyleParameters, triangle: int) -
         result[6 + c] = down[c]
     result[9] = centre[0]
     result[10] = centre[1]
-    result[11] = float(scene.curved[0])
     return result
 
 
 @wp.func
-def curvature_of(scene: Scene, triangle: int, number: int) -> wp.vec3f:
-    """A term of a quadratic colour, see `Scene`."""
-    red = scene.curvatures[triangle, number, 0]
-    green = scene.curvatures[triangle, number, 1]
-    return wp.vec3f(red, green, scene.curvatures[triangle, number, 2])
+def bend(scene: Scene, triangle: int, channel: int, right: float, down: float) -> float:
+    """What a quadratic colour adds at a place seen from the centroid."""
+    first = 12 * triangle + channel
+    table = wp.array(ptr=scene.curvatures.ptr, shape=(12 * scene.curvatures.shape[0],), dtype=float)
+    bent = right * table[first + 3] + down * table[first + 6]
+    return table[first] + right * bent + down * down * table[first + 9]
 
 
 @wp.func
@@ -55,19 +55,18 @@ def gradient_color(
     t = sample.triangle
     n = prepared_for(scene, parameters, t)
     at = sample.offset
-    color = wp.vec3f(
-        n[0] + at[0] * n[3] + at[1] * n[6],
-        n[1] + at[0] * n[4] + at[1] * n[7],
-        n[2] + at[0] * n[5] + at[1] * n[8],
-    )
-    if n[11] != 0.0:
-        away = at - wp.vec2f(n[9], n[10])
-        bent = away[0] * curvature_of(scene, t, 1) + away[1] * curvature_of(scene, t, 2)
-        color += curvature_of(scene, t, 0) + away[0] * bent
-        color += away[1] * away[1] * curvature_of(scene, t, 3)
-    red = wp.clamp(color[0], 0.0, 255.0)
-    green = wp.clamp(color[1], 0.0, 255.0)
-    return full_ink(wp.vec3f(red, green, wp.clamp(color[2], 0.0, 255.0)))
+    red = n[0] + at[0] * n[3] + at[1] * n[6]
+    green = n[1] + at[0] * n[4] + at[1] * n[7]
+    blue = n[2] + at[0] * n[5] + at[1] * n[8]
+    if scene.curved[0] != 0:
+        right = at[0] - n[9]
+        down = at[1] - n[10]
+        red += bend(scene, t, 0, right, down)
+        green += bend(scene, t, 1, right, down)
+        blue += bend(scene, t, 2, right, down)
+    red = wp.clamp(red, 0.0, 255.0)
+    green = wp.clamp(green, 0.0, 255.0)
+    return full_ink(wp.vec3f(red, green, wp.clamp(blue, 0.0, 255.0)))
 
 
 @dataclass(frozen=True)
