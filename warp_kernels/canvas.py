@@ -61,7 +61,7 @@ class Canvas:
         width, height = output
         columns = width * self.samples
         self._band = max(1, min(height, BAND_SAMPLES // (columns * self.samples)))
-        # a row more than there is: the last pixel's last sample is read together with three more
+        # a row more than there is: the last pixel's samples are read together with one that is not
         self._triangle_of = device.empty((self._band * self.samples + 1, columns), int)
         self._points = device.empty((self._band, LIST), int)
         is_opaque = any(coat.is_opaque for coat in self._coats)
@@ -272,6 +272,7 @@ class Canvas:
             fades=fades,
             triangle_of=self._triangle_of,
             top=top,
+            flows_on=top + 2 * self._band <= self.output[1],
             points_out=self._points,
             canvas_out=self._pixels,
         )

@@ -222,6 +222,7 @@ def record_shade(
     fades: bool,
     triangle_of: wp.array,
     top: int,
+    flows_on: bool,
     points_out: wp.array,
     canvas_out: wp.array,
 ) -> Phase:
@@ -237,10 +238,12 @@ def record_shade(
         fades: Whether any triangle fades; else `layers` is not looked at.
         triangle_of: Triangle of every sample of a band, see `gbuffer`.
         top: The output row with which the band begins.
+        flows_on: Whether the next band has as many rows: then each part of it finds its own rows
+            where it found them in this one, and no part waits for another.
         points_out: Room for the points of a stretch of every row, [rows, LIST] int32.
         canvas_out: Code values, [rows, columns, 3] if a coat is opaque, else [rows, columns, 4]
             with straight alpha.
     """
     inputs = [scene, parameters, layers, triangle_of, top]
     kernel = _shade_kernel(coats, samples, fades)
-    return device.record(kernel, inputs, [points_out, canvas_out], flows_on=True)
+    return device.record(kernel, inputs, [points_out, canvas_out], flows_on=flows_on)
