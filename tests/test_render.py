@@ -214,7 +214,7 @@ def test_growing_meshes_are_drawn(device: str) -> None:
 
 @pytest.mark.parametrize("threads", [2, 3])
 def test_no_thread_overtakes_another(threads: int, device: str) -> None:
-    """In bands of one height each keeps to its own rows; before a lower one they once did not wait."""
+    """Where the last band is lower, rows change hands: once nobody waited for that."""
     snapshot = snapshot_of(Device(device), waves(96, 64), random_mesh(96, 64, 60), CONSTANT)
     alone = draw(snapshot, device, Flat(), size=(288, 192), threads=1)
     renderer = Renderer(Device(device, threads), (96, 64), (288, 192), (Flat(),))
