@@ -73,11 +73,13 @@ def owners_by_kernel(mesh: Mesh, device: Device) -> np.ndarray:
             device,
             vertices=wp.array(mesh.vertices, dtype=wp.vec2d, device=device.warp),
             triangles=wp.array(mesh.triangles, dtype=wp.vec3i, device=device.warp),
+            count=wp.array([mesh.triangle_count], dtype=int, device=device.warp),
             scale=(1.0, 1.0),
             first_row=first_row,
+            samples=1,
             triangle_out=band,
         )
-        phase.resize(mesh.triangle_count)
+        phase.resize(rows, threads=mesh.triangle_count)
         device.run([phase])
         bands.append(band.numpy())
     return np.concatenate(bands)

@@ -212,6 +212,16 @@ def test_growing_meshes_are_drawn(device: str) -> None:
     np.testing.assert_array_equal(first, kept)  # a picture handed out is never drawn over
 
 
+@pytest.mark.parametrize("threads", [2, 3])
+def test_no_thread_overtakes_another(threads: int, device: str) -> None:
+    """Where the last band is lower, rows change hands: once nobody waited for that."""
+    snapshot = snapshot_of(Device(device), waves(96, 64), random_mesh(96, 64, 60), CONSTANT)
+    alone = draw(snapshot, device, Flat(), size=(288, 192), threads=1)
+    renderer = Renderer(Device(device, threads), (96, 64), (288, 192), (Flat(),))
+    for _ in range(40):
+        np.testing.assert_array_equal(renderer.render(snapshot), alone)
+
+
 @pytest.fixture(params=STYLES)
 def stack(request: pytest.FixtureRequest) -> tuple[Style, ...]:
     """Give each registered style as people see it: lines over flat colours."""

@@ -251,3 +251,12 @@ def test_textures_are_sharp_in_flat_triangles(device: str) -> None:
     )
     from_afar = far.reshape(24, 8, 240, 8, 3).mean(axis=(1, 3))
     assert np.abs(near - from_afar).mean() < 1.2
+
+
+def test_texture_of_a_thin_triangle_is_its_mean(device: str) -> None:
+    """Once it was black: of the coarsest level alone nothing was drawn."""
+    points = np.array([[0, 0], [96, 0], [96, 64], [0, 64], [48, 63.5]])
+    corners = [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]]
+    snapshot = snapshot_with(mesh_of(points, corners, *SIZE), [(120, 120, 120)] * 4)
+    pixels = draw(snapshot, device, STYLES["texture"](), zoom=2)
+    assert pixels[-1, 90:102].min() > 60

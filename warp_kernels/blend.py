@@ -16,7 +16,7 @@ from typing import Any
 
 import warp as wp
 
-from warp_kernels.scene import FAR, FIXED, FRACTION_BITS, Sample, Scene, StyleParameters
+from warp_kernels.scene import FIXED, FRACTION_BITS, Sample, Scene, StyleParameters
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 
@@ -35,8 +35,6 @@ class Coat:
     """Whether nothing below it shows or is left transparent."""
     covers: bool
     """Whether it leaves no gaps."""
-    is_even: bool
-    """Whether its ink is the same all over a triangle."""
     is_masked: bool = False
     """Whether it is drawn inside of a mask alone."""
     is_followed: bool = False
@@ -126,16 +124,6 @@ def inked(below: wp.vec4f, painted: wp.vec4f, coverage: float) -> wp.vec4f:
     return wp.vec4f(color[0], color[1], color[2], opacity)
 
 
-@wp.struct
-class Coated:
-    """What some coats make of a point."""
-
-    color: wp.vec4f
-    """Colour [code values] and opacity."""
-    calm: float
-    """How far to the right of the point they make the same of all, see `Ink` [px]."""
-
-
 @wp.func
 def lay_on_nothing(below: wp.vec4f, color: wp.vec3f, opacity: float) -> wp.vec4f:
     """The lowest style of all."""
@@ -168,7 +156,7 @@ def mask_at(masks: wp.array2d(dtype=wp.uint8), first: int, rows: int, place: wp.
 
 @cache
 def stack_of(coats: tuple[Coat, ...]) -> Any:
-    """A wp.func `(Scene, array of StyleParameters, Sample) -> Coated`.
+    """A wp.func `(Scene, array of StyleParameters, Sample) -> vec4f`: colour and opacity.
 
     Args:
         coats: Bottom to top; below the lowest everything is transparent.
@@ -178,11 +166,9 @@ def stack_of(coats: tuple[Coat, ...]) -> Any:
         @wp.func
         def nothing(
             scene: Scene, parameters: wp.array(dtype=StyleParameters), sample: Sample
-        ) -> Coated:
+        ) -> wp.vec4f:
             """Nothing drawn: transparent."""
-            coated = Coated()
-            coated.calm = FAR
-            return coated
+            return wp.vec4f()
 
         return nothing
     top, layer = coats[-1].shader, len(coats) - 1
@@ -197,21 +183,17 @@ def stack_of(coats: tuple[Coat, ...]) -> Any:
     @wp.func
     def blended(
         scene: Scene, parameters: wp.array(dtype=StyleParameters), sample: Sample
-    ) -> Coated:
+    ) -> wp.vec4f:
         """The coats below, and the top one over them."""
-        coated = below(scene, parameters, sample)
-        under = coated.color
+        under = below(scene, parameters, sample)
         own = parameters[wp.static(layer)]
         ink = top(scene, own, sample, under)
-        coated.calm = wp.min(coated.calm, ink.calm)
         if wp.static(is_masked):
-            coated.calm = 0.0
             row = own.mask * scene.mask_rows
             ink.opacity *= mask_at(scene.masks, row, scene.mask_rows, sample.place)
         if wp.static(is_followed):
             ink.opacity *= float(scene.shares[sample.triangle, own.mask]) / 255.0
-        coated.color = cover(under, lay(under, ink.color, ink.opacity * own.opacity), ink.coverage)
-        return coated
+        return cover(under, lay(under, ink.color, ink.opacity * own.opacity), ink.coverage)
 
     return blended
 

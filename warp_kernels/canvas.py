@@ -12,10 +12,11 @@ from warp_kernels.device import Device, Phase
 from warp_kernels.gbuffer import record_gbuffer
 from warp_kernels.layers import Layers, LayerTables
 from warp_kernels.paint import Paint, shapes_of, to_places
+from warp_kernels.points import LIST, parts_of_a_pixel
 from warp_kernels.prepare import record_prepare
 from warp_kernels.raster import MAX_SIDE
 from warp_kernels.scene import FIXED, FRACTION_BITS, Numbers, Scene, StyleParameters
-from warp_kernels.shade import parts_of_a_pixel, record_shade
+from warp_kernels.shade import record_shade
 from warp_kernels.source_picture import reduced, step_for
 from warp_kernels.styles import Style
 from warp_kernels.texture import Texture, pack
@@ -23,8 +24,8 @@ from warp_kernels.texture import Texture, pack
 SAMPLES = 3
 """Samples per output pixel, across and down each; fewer where the sample grid would exceed what
 coverage can count, see `raster.MAX_SIDE`."""
-BAND_SAMPLES = 1 << 19
-"""Samples of a band, for which triangles are found before they are shaded: 2 MB stay in cache."""
+BAND_SAMPLES = 1 << 18
+"""Samples of a band, for which triangles are found before they are shaded: 1 MB stays in cache."""
 
 
 class Canvas:
@@ -57,15 +58,19 @@ class Canvas:
         self.samples = max(1, min(SAMPLES, MAX_SIDE // max(output)))
         self._coats = coats_of(styles, masked, followed)
         self._masked, self._followed = len(masked) - len(followed), len(followed)
+        self._is_even = all(style.is_even for style in styles) and not masked
         styles = (*styles, *masked)
         self._prepares = {i: s.prepare for i, s in enumerate(styles) if s.prepare is not None}
         width, height = output
         columns = width * self.samples
         self._band = max(1, min(height, BAND_SAMPLES // (columns * self.samples)))
-        self._triangle_of = device.empty((self._band * self.samples, columns), int)
+        # a row more than there is: the last pixel's samples are read together with one that is not
+        self._triangle_of = device.empty((self._band * self.samples + 1, columns), int)
+        self._points = device.empty((self._band, LIST), int)
         is_opaque = any(coat.is_opaque for coat in self._coats)
-        self._pixels = device.empty((height, width), wp.vec3ub if is_opaque else wp.vec4ub)
+        self._pixels = device.empty((height, width, 3 if is_opaque else 4), wp.uint8)
         self._curved = device.empty(1, int)
+        self._count = device.empty(1, int)
         self._steady = self._steady_scene(needs_source=any(s.needs_source for s in styles))
         self._parameters = self._parameters_of(styles, textures)
         self._allocate(vertices=512, triangles=1024, layers=1024, links=1)
@@ -75,6 +80,8 @@ class Canvas:
         width, height = self.picture
         step = step_for(self.picture, self.output)
         size = (-(-height // step), -(-width // step)) if needs_source else (1, 1)
+        across, down = self._scale
+        sample_size = (FIXED / (across * self.samples), FIXED / (down * self.samples))
         return {
             "curved": self._curved,
             "source": self.device.empty(size, wp.vec3ub),
@@ -84,15 +91,14 @@ class Canvas:
             "columns": self._filled(centres(width, self.output[0]), int),
             "rows": self._filled(centres(height, self.output[1]), int),
             "pixel": float(np.sqrt((0.5 / np.square(self._scale)).sum())),
-            "parts": self._filled(parts_of_a_pixel(self.samples), wp.vec4f),
-            "sample_size": wp.vec2f(*(FIXED / (scale * self.samples) for scale in self._scale)),
+            "parts": self._filled(parts_of_a_pixel(self.samples, sample_size), int),
         }
 
     def _parameters_of(self, styles: tuple[Style, ...], textures: list[Texture | None]) -> wp.array:
         """What the styles were asked for; their textures become a part of the scene."""
         texels, levels, ranges = pack(textures)
         self._steady["texels"] = self._filled(texels, wp.uint8)
-        self._steady["levels"] = self._filled(levels, wp.vec4i)
+        self._steady["levels"] = self._filled(levels, int)
         packed = np.zeros(max(1, len(styles)), dtype=StyleParameters.numpy_dtype())
         packed["row"] = np.arange(len(packed))
         for kind in ("is_masked", "is_followed"):
@@ -138,8 +144,8 @@ class Canvas:
             self._write_layers(layers)
         self.device.write(self._vertices, vertices)
         self.device.write(self._triangles, triangles)
-        is_even = all(coat.is_even for coat in self._coats)
-        self._write_paint(paint, shapes=not is_even or layers is not None)
+        self.device.write(self._count, np.array([len(triangles)]))
+        self._write_paint(paint, shapes=not self._is_even or layers is not None)
         if source is not None and self._steady["source"].size > 1:
             self.device.write(self._steady["source"], reduced(source, self._steady["source_step"]))
         if masks:
@@ -148,8 +154,9 @@ class Canvas:
             preparing.resize(len(paint.colors))
         phases = list(self._preparing)
         for top, filling, shading in self._bands(fades=layers is not None):
-            filling.resize(len(triangles))
-            shading.resize(min(self._band, self.output[1] - top))
+            rows = min(self._band, self.output[1] - top)
+            filling.resize(rows, threads=len(triangles))
+            shading.resize(rows)
             phases += [filling, shading]
         self.device.run(phases)
         return self.device.read(self._pixels, self.output[1])
@@ -195,12 +202,12 @@ class Canvas:
         self._vertices = self._empty(vertices, wp.vec2d)
         self._triangles = self._empty(triangles, wp.vec3i)
         self._tables = {
-            "colors": self._empty(layers, wp.vec3f),
+            "colors": self._empty((layers, 3), float),
             "gradients": self._empty((layers, 2), wp.vec3f),
-            "curvatures": self._empty((layers, 4), wp.vec3f),
+            "curvatures": self._empty((layers, 4, 3), float),
             "anchors": self._empty(layers, wp.vec2i),
-            "sides": self._empty((layers, 2), wp.vec2f),
-            "incircles": self._empty(layers, wp.vec3f),
+            "sides": self._empty((layers, 2, 2), float),
+            "incircles": self._empty((layers, 3), float),
             "lines": self._empty(layers, wp.mat33f),
             "hashes": self._empty(layers, wp.uint32),
             "prepared": self._empty((len(self._parameters), layers), Numbers),
@@ -257,8 +264,10 @@ class Canvas:
             self.device,
             vertices=self._vertices,
             triangles=self._triangles,
+            count=self._count,
             scale=(scale[0] * self.samples, scale[1] * self.samples),
             first_row=top * self.samples,
+            samples=self.samples,
             triangle_out=self._triangle_of,
         )
         shading = record_shade(
@@ -271,6 +280,8 @@ class Canvas:
             fades=fades,
             triangle_of=self._triangle_of,
             top=top,
+            flows_on=top + 2 * self._band <= self.output[1],
+            points_out=self._points,
             canvas_out=self._pixels,
         )
         return filling, shading
@@ -280,7 +291,7 @@ class Canvas:
 
     def _filled(self, values: np.ndarray, dtype: Any) -> wp.array:
         """A device array of given values."""
-        array = self.device.empty(len(values), dtype)
+        array = self.device.empty(values.shape if dtype is int else len(values), dtype)
         self.device.write(array, values)
         return array
 
@@ -295,15 +306,13 @@ def coats_of(
         masked: Those over them that are drawn inside of masks.
         followed: Numbers of those among these that are drawn on triangles of a region instead.
     """
-    coats = [Coat(s.shader, s.blend, s.is_opaque, s.covers, s.is_even) for s in styles]
+    coats = [Coat(s.shader, s.blend, s.is_opaque, s.covers) for s in styles]
     for number in range(1, len(coats)):
         if any(coat.is_opaque for coat in coats[:number]):
             coats[number] = replace(coats[number], is_opaque=False)
     for number, s in enumerate(masked):
-        coat = Coat(s.shader, s.blend, False, s.covers, s.is_even, is_followed=True)
-        if number not in followed:
-            coat = replace(coat, is_even=False, is_masked=True, is_followed=False)
-        coats.append(coat)
+        is_followed = number in followed
+        coats.append(Coat(s.shader, s.blend, False, s.covers, not is_followed, is_followed))
     return tuple(coats)
 
 

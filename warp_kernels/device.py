@@ -41,6 +41,8 @@ class Phase:
         set_span: Writes the range of a part, by the part's number, into device memory.
         per_element: Kernel threads per element.
         smallest_part: Elements below which a second part costs more than it saves.
+        flows_on: Whether the next phase's parts look only at what the same part of this one wrote:
+            then no part waits for another between the two.
     """
 
     def __init__(
@@ -49,9 +51,11 @@ class Phase:
         set_span: Callable[[int, int, int], None],
         per_element: int,
         smallest_part: int,
+        flows_on: bool = False,
     ) -> None:
         self.parts = tuple(parts)
-        self._size = (0, 0)
+        self.flows_on = flows_on
+        self._size: tuple[int, int, int | None] = (0, 0, None)
         self._set_span = set_span
         self._per_element = per_element
         self._smallest_part = smallest_part
@@ -61,19 +65,29 @@ class Phase:
         """Size of each part's launch, at least that of its range."""
         return tuple(int(part.bounds.size) for part in self.parts)
 
-    def resize(self, count: int, *, per_element: int | None = None) -> None:
-        """Spread `count` elements over the parts, of `per_element` threads if that changes."""
+    def resize(
+        self, count: int, *, per_element: int | None = None, threads: int | None = None
+    ) -> None:
+        """Spread `count` elements over the parts.
+
+        Args:
+            count: Elements.
+            per_element: Kernel threads per element, if that changes.
+            threads: Kernel threads of each part, if they are not for its elements: each looks at
+                another thing and asks what it means for all elements of the part.
+        """
         if per_element is not None:
             self._per_element = per_element
-        if self._size == (count, self._per_element):
+        if self._size == (count, self._per_element, threads):
             return
-        self._size = (count, self._per_element)
+        self._size = (count, self._per_element, threads)
         share = max(-(-count // len(self.parts)), self._smallest_part)
         for number, part in enumerate(self.parts):
             begin = min(number * share, count) * self._per_element
             end = min((number + 1) * share, count) * self._per_element
             self._set_span(number, begin, end)
-            part.set_dim(_launch_size(end - begin))
+            needed = end - begin if threads is None or begin == end else threads
+            part.set_dim(_launch_size(needed))
 
 
 class Device:
@@ -105,8 +119,9 @@ class Device:
         *,
         per_element: int = 1,
         smallest_part: int = SMALLEST_PART,
+        flows_on: bool = False,
     ) -> Phase:
-        """Record the launch of `kernel`, split over the threads; `Phase.resize` sets its size."""
+        """Record the launch of `kernel`, split over the threads; see `Phase`, also for its size."""
         with WARP:
             spans = [wp.zeros(1, dtype=wp.vec2i, device=self.warp) for _ in range(self.part_count)]
             parts = [
@@ -115,7 +130,7 @@ class Device:
                 )
                 for span in spans
             ]
-        return Phase(parts, self._span_writer(spans), per_element, smallest_part)
+        return Phase(parts, self._span_writer(spans), per_element, smallest_part, flows_on)
 
     def _span_writer(self, spans: Sequence[wp.array]) -> Callable[[int, int, int], None]:
         """A function that writes a part's range; on the CPU straight into its memory."""
@@ -255,7 +270,7 @@ class Team:
                 part = phase.parts[number]
                 if part.bounds.size > 0:
                     part.launch()
-                if self._meetings:
+                if self._meetings and not (phase.flows_on and phase is not phases[-1]):
                     self._meetings[number].launch()
         return capture.graph
 

@@ -56,8 +56,6 @@ class Seen:
     """How much the styles hide of what is behind them all, 0 to 1."""
     clear: float
     """Distance from the nearest border beneath [px]."""
-    calm: float
-    """How far to the right of the point the same is seen, see `Ink` [px]."""
 
 
 @wp.func
@@ -86,39 +84,11 @@ def layer_beneath(scene: Scene, layers: LayerTables, above: int, place: wp.vec2i
 
 
 @cache
-def opaque_look(color_at: Any) -> Any:
-    """A wp.func that sees the frame's own triangles alone.
-
-    Args:
-        color_at: A wp.func `(Scene, parameters, Sample) -> Coated`.
-    """
-
-    @wp.func
-    def look(
-        scene: Scene,
-        parameters: wp.array(dtype=StyleParameters),
-        layers: LayerTables,
-        sample: Sample,
-    ) -> Seen:
-        """Colour, and a distance from every border beneath: there is none."""
-        coated = color_at(scene, parameters, sample)
-        color = coated.color
-        seen = Seen()
-        seen.color = color[3] * wp.vec3f(color[0], color[1], color[2])
-        seen.opacity = color[3]
-        seen.clear = FAR
-        seen.calm = coated.calm
-        return seen
-
-    return look
-
-
-@cache
 def fading_look(color_at: Any) -> Any:
     """A wp.func that sees through the triangles that are not opaque yet.
 
     Args:
-        color_at: A wp.func `(Scene, parameters, Sample) -> Coated`.
+        color_at: A wp.func `(Scene, parameters, Sample) -> vec4f`.
     """
 
     @wp.func
@@ -140,10 +110,8 @@ def fading_look(color_at: Any) -> Any:
         here.column = sample.column
         rest = float(1.0)
         while rest > 0.0:
-            coated = color_at(scene, parameters, here)
-            color = coated.color
+            color = color_at(scene, parameters, here)
             weight = layers.weights[here.triangle]
-            seen.calm = wp.where(rest * weight < 1.0, 0.0, coated.calm)
             seen.color += rest * weight * color[3] * wp.vec3f(color[0], color[1], color[2])
             seen.opacity += rest * weight * color[3]
             rest *= 1.0 - weight

@@ -91,7 +91,7 @@ def shapes_of(corners: np.ndarray) -> Shapes:
     sides = (places[:, 1:] - places[:, :1]) / float(1 << FRACTION_BITS)
     first, second = sides[:, 0], sides[:, 1]
     # the side across from a corner is its weight: sum(weight * corner) / sum(weight)
-    across = np.linalg.norm(np.stack([second - first, second, first]), axis=2)
+    across = _lengths(*np.stack([second - first, second, first]).transpose(2, 0, 1))
     perimeter = np.maximum(across.sum(axis=0), 1e-12)
     centres = (across[1, :, None] * first + across[2, :, None] * second) / perimeter[:, None]
     twice_area = np.abs(first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0])
@@ -107,12 +107,18 @@ def _lines(first: np.ndarray, second: np.ndarray) -> np.ndarray:
         first: Corners 1 from corner 0 [px], [N, 2].
         second: Corners 2 from there [px], [N, 2].
     """
-    corners = np.stack([np.zeros_like(first), first, second], axis=1)
-    sides = corners[:, [1, 2, 0]] - corners
-    normals = np.stack([-sides[:, :, 1], sides[:, :, 0]], axis=2)
-    normals /= np.maximum(np.linalg.norm(normals, axis=2, keepdims=True), 1e-12)
+    # long rows: numpy is slow where the last axis is a point
+    x, y = np.stack([np.zeros_like(first), first, second]).transpose(2, 0, 1)
+    a, b = y - y[[1, 2, 0]], x[[1, 2, 0]] - x
+    length = np.maximum(_lengths(a, b), 1e-12)
+    a, b = a / length, b / length
     # the third corner lies inside of the side between the other two
-    heights = ((corners[:, [2, 0, 1]] - corners) * normals).sum(axis=2)
-    normals *= np.where(heights < 0, -1.0, 1.0)[:, :, None]
-    offsets = -(normals * corners).sum(axis=2, keepdims=True)
-    return np.concatenate([normals, offsets], axis=2)
+    inside = (x[[2, 0, 1]] - x) * a + (y[[2, 0, 1]] - y) * b
+    sign = np.where(inside < 0, -1.0, 1.0)
+    a, b = sign * a, sign * b
+    return np.stack([a, b, -(a * x + b * y)], axis=2).swapaxes(0, 1)
+
+
+def _lengths(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Lengths of vectors by their components."""
+    return np.sqrt(x * x + y * y)

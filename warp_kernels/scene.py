@@ -40,21 +40,23 @@ class StyleParameters:
 class Scene:
     """One frame's triangles, as shaders see them."""
 
-    colors: wp.array(dtype=wp.vec3f)
-    """Mean colour of every triangle [code values], [T]."""
+    colors: wp.array2d(dtype=float)
+    """Mean colour of every triangle [code values], [T, 3]; see `color_of`."""
     gradients: wp.array2d(dtype=wp.vec3f)
     """Change of colour per px to the right and down, at the centre [code values / px], [T, 2]."""
-    curvatures: wp.array2d(dtype=wp.vec3f)
+    curvatures: wp.array3d(dtype=float)
     """What a quadratic colour adds to that: its difference from the mean at the centre [code
-    values], then the coefficients of x^2, x y and y^2 from there [code values / px^2], [T, 4]."""
+    values], then the coefficients of x^2, x y and y^2 from there [code values / px^2],
+    [T, 4, 3]."""
     curved: wp.array(dtype=int)
     """1 where colours are quadratic, 0 where `curvatures` are not to be read, [1]."""
     anchors: wp.array(dtype=wp.vec2i)
     """Place of every triangle's corner 0, which starts its base edge [2^-16 px], [T]."""
-    sides: wp.array2d(dtype=wp.vec2f)
-    """Corners 1 and 2 from corner 0 [px of the picture]; the first is the base edge, [T, 2]."""
-    incircles: wp.array(dtype=wp.vec3f)
-    """Incentre from corner 0 and the inradius [px of the picture], [T]."""
+    sides: wp.array3d(dtype=float)
+    """Corners 1 and 2 from corner 0 [px of the picture]; the first is the base edge, [T, 2, 2]; see
+    `side_of`."""
+    incircles: wp.array2d(dtype=float)
+    """Incentre from corner 0 and the inradius [px of the picture], [T, 3]."""
     lines: wp.array(dtype=wp.mat33f)
     """Rows (a, b, c) for the sides from corners 0, 1 and 2 on: a x + b y + c is the distance from
     the side to the inside, (x, y) seen from corner 0 [px of the picture], [T]."""
@@ -74,18 +76,16 @@ class Scene:
     """How much every triangle belongs to every followed region, 255 for fully, [T, regions]."""
     texels: wp.array(dtype=wp.uint8)
     """The textures of all styles; see `texture`."""
-    levels: wp.array(dtype=wp.vec4i)
-    """Begin in `texels`, images, rows and columns of every level of every texture, [L]."""
+    levels: wp.array2d(dtype=int)
+    """Begin in `texels`, images, rows and columns of every level of every texture, [L, 4]."""
     columns: wp.array(dtype=int)
     """Place of the centre of every output column [2^-16 px], [columns]."""
     rows: wp.array(dtype=int)
     """The same of every output row, [rows]."""
     pixel: float
     """Size of an output pixel [px of the picture]."""
-    parts: wp.array(dtype=wp.vec4f)
-    """Every set of samples of a pixel, see `shade.parts_of_a_pixel`."""
-    sample_size: wp.vec2f
-    """Width and height of the parts of an output pixel that are told apart [2^-16 px]."""
+    parts: wp.array2d(dtype=int)
+    """Every set of samples of a pixel, see `points.parts_of_a_pixel`, [sets, 3]."""
 
 
 @wp.struct
@@ -117,9 +117,48 @@ class Ink:
     """How much the ink hides, 0 to 1; mixes code values, as painting programs do."""
     coverage: float
     """Part of the point that is inked at all, 0 to 1; mixes light, as the eye does."""
-    calm: float
-    """How far its triangle goes on to the right of the point and is inked alike [px], so that the
-    next points need not be asked for; `FAR` if all of it is inked alike, 0 if it is not known."""
+
+
+# What follows reads tables as plain ones of single numbers. The compiler looks many points up at a
+# time if it knows the strides, and if no vector is read as a whole: that is two numbers in one.
+
+
+@wp.func
+def color_of(scene: Scene, triangle: int) -> wp.vec3f:
+    """Mean colour of a triangle [code values]."""
+    table = wp.array(ptr=scene.colors.ptr, shape=(3 * scene.colors.shape[0],), dtype=float)
+    return wp.vec3f(table[3 * triangle], table[3 * triangle + 1], table[3 * triangle + 2])
+
+
+@wp.func
+def anchor_of(scene: Scene, triangle: int) -> wp.vec2i:
+    """Place of a triangle's corner 0 [2^-16 px]."""
+    table = wp.array(ptr=scene.anchors.ptr, shape=(2 * scene.anchors.shape[0],), dtype=int)
+    return wp.vec2i(table[2 * triangle], table[2 * triangle + 1])
+
+
+@wp.func
+def prepared_for(scene: Scene, parameters: StyleParameters, triangle: int) -> Numbers:
+    """What a style worked out about a triangle."""
+    triangles = scene.prepared.shape[1]
+    first = wp.uint64(64 * triangles) * wp.uint64(parameters.row)
+    table = wp.array(ptr=scene.prepared.ptr + first, shape=(16 * triangles,), dtype=float)
+    result = Numbers()
+    for i in range(16):
+        result[i] = table[16 * triangle + i]
+    return result
+
+
+@wp.func
+def side_of(scene: Scene, triangle: int, number: int) -> wp.vec2f:
+    """Corner 1 (number 0) or 2 (number 1) of a triangle from corner 0 [px of the picture]."""
+    return wp.vec2f(scene.sides[triangle, number, 0], scene.sides[triangle, number, 1])
+
+
+@wp.func
+def incentre_of(scene: Scene, triangle: int) -> wp.vec2f:
+    """Centre of a triangle's incircle from corner 0 [px of the picture]."""
+    return wp.vec2f(scene.incircles[triangle, 0], scene.incircles[triangle, 1])
 
 
 @wp.func
@@ -149,3 +188,25 @@ def offset_of(place: wp.vec2i, anchor: wp.vec2i) -> wp.vec2f:
     """A place seen from another one [px]; the difference is exact before it is rounded."""
     away = place - anchor
     return wp.vec2f(float(away[0]), float(away[1])) / FIXED
+
+
+@wp.func
+def sample_at(scene: Scene, triangle: int, place: wp.vec2i) -> Sample:
+    """A point of a triangle at a place [2^-16 px]."""
+    here = Sample()
+    here.triangle = triangle
+    here.place = place
+    here.offset = offset_of(place, anchor_of(scene, triangle))
+    return here
+
+
+@wp.func
+def extent_of(scene: Scene, share: float, samples: int) -> float:
+    """Side of what a part of a pixel is: as wide as a strip of so many samples beside a border.
+
+    Args:
+        scene: Knows the size of a pixel.
+        share: The part, of a pixel.
+        samples: Samples of a pixel, across and down each.
+    """
+    return scene.pixel * wp.max(share, 1.0 / float(samples))

@@ -1,49 +1,47 @@
 """One generic shader: a stack of styles, bottom to top, blended for every output pixel.
 
 A pixel whose samples all lie in one triangle is shaded once, at its centre; a pixel on a border is
-shaded once for each of its triangles, in the middle of the samples that lie in it. Where one fades
-in and a border is near beneath, the pixel is shaded at every sample.
+shaded once for each of its triangles, in the middle of the samples that lie in it; see `points`.
 The average is of code values: the triangles on either side approximate one picture, so they are
 alike, and it is in code values that their error is measured. Where strong contrasts meet, such as
 ink on paper, a style gives its coverage, which mixes light; see `blend`.
+
+A style is written for one point; the compiler makes of it a program for sixteen at a time, as long
+as the loop over points stores nowhere but into variables of its own and reads single numbers.
 """
 
 from functools import cache
 from typing import Any
 
-import numpy as np
 import warp as wp
 
 from warp_kernels.blend import Coat, stack_of
 from warp_kernels.device import Device, Phase
-from warp_kernels.layers import LayerTables, Seen, fading_look, opaque_look
-from warp_kernels.scene import FAR, FIXED, Sample, Scene, StyleParameters, offset_of
+from warp_kernels.layers import LayerTables
+from warp_kernels.points import (
+    COUNT,
+    DOWN,
+    LANES,
+    LIST,
+    PIXEL,
+    RIGHT,
+    ROOM,
+    TRIANGLE,
+    point_lister,
+)
+from warp_kernels.scene import Sample, Scene, StyleParameters, extent_of, sample_at
+from warp_kernels.see_through import see_through
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 
+SHADE_OPTIONS = {
+    "enable_backward": False,
+    "fuse_fp": False,
+    "cpu_compiler_flags": "-march=native -mprefer-vector-width=512 -mllvm=-inline-threshold=9000",
+}
+"""The widest registers that there are, and one program of all functions that a stack is made of."""
 
-CAUTION = wp.constant(0.98)
-"""Part of a distance that is relied on: places are rounded."""
-
-
-@wp.func
-def is_whole(line: wp.array(dtype=int), first: int, width: int, last: int) -> bool:
-    """Whether one triangle holds all samples of a pixel.
-
-    One that holds the four outermost samples holds those between: it is convex.
-
-    Args:
-        line: Triangles of the samples of a row of pixels.
-        first: Place of the pixel's first sample.
-        width: Samples in a row.
-        last: Samples of a pixel, across and down each, less one.
-    """
-    triangle = line[first]
-    below = first + last * width
-    differing = triangle ^ line[first + last]
-    differing = differing | (triangle ^ line[below])
-    differing = differing | (triangle ^ line[below + last])
-    return differing == 0
+Values = wp.types.vector(length=ROOM, dtype=wp.float32)
 
 
 @wp.func
@@ -53,167 +51,131 @@ def code_value(value: float) -> wp.uint8:
 
 
 @wp.func
-def opaque_pixel(seen: Seen) -> wp.vec3ub:
-    """Code values of a pixel through which nothing shows."""
-    color = seen.color
-    return wp.vec3ub(code_value(color[0]), code_value(color[1]), code_value(color[2]))
+def store_opaque(
+    out: wp.array(dtype=wp.uint8), k: int, red: float, green: float, blue: float, opacity: float
+):
+    """Write a pixel through which nothing shows."""
+    out[3 * k] = code_value(red)
+    out[3 * k + 1] = code_value(green)
+    out[3 * k + 2] = code_value(blue)
 
 
 @wp.func
-def transparent_pixel(seen: Seen) -> wp.vec4ub:
-    """Code values of a pixel with straight alpha."""
-    color = seen.color / wp.max(seen.opacity, 1.0e-6)
-    return wp.vec4ub(
-        code_value(color[0]),
-        code_value(color[1]),
-        code_value(color[2]),
-        code_value(255.0 * seen.opacity),
-    )
+def store_transparent(
+    out: wp.array(dtype=wp.uint8), k: int, red: float, green: float, blue: float, opacity: float
+):
+    """Write a pixel with straight alpha."""
+    whole = wp.max(opacity, 1.0e-6)
+    out[4 * k] = code_value(red / whole)
+    out[4 * k + 1] = code_value(green / whole)
+    out[4 * k + 2] = code_value(blue / whole)
+    out[4 * k + 3] = code_value(255.0 * opacity)
 
 
-def parts_of_a_pixel(samples: int) -> np.ndarray:
-    """What every set of a pixel's samples is, by the set as bits, sample 0 the lowest.
+@cache
+def _faded_drawer(color_at: Any, samples: int, store: Any) -> Any:
+    """A wp.func that draws those pixels of a stretch anew that something shows through."""
+    look_through = see_through(color_at, samples)
 
-    Args:
-        samples: Samples of a pixel, across and down each.
+    @wp.func
+    def draw_faded(
+        scene: Scene,
+        parameters: wp.array(dtype=StyleParameters),
+        layers: LayerTables,
+        line: wp.array(dtype=int),
+        points: wp.array(dtype=int),
+        listed: wp.vec3i,
+        row: int,
+        column: int,
+        out: wp.array(dtype=wp.uint8),
+    ):
+        """Point by point: a pixel on several borders is drawn as often."""
+        for j in range(listed[2]):
+            k = points[wp.static(PIXEL) + j]
+            faded = layers.weights[points[wp.static(TRIANGLE) + j]] < 1.0
+            if faded and k < listed[0]:
+                seen = look_through(scene, parameters, layers, line, row, column + k)
+                color = seen.color
+                store(out, k, color[0], color[1], color[2], seen.opacity)
 
-    Returns:
-        `Scene.parts`, [2^(samples^2), 4]: number of samples, their middle from the centre of the
-        pixel, right and down [samples], and the number of the first one.
-    """
-    sets = np.arange(1 << samples**2)
-    bits = (sets[:, None] >> np.arange(samples**2)) & 1
-    counts = bits.sum(axis=1)
-    down, right = np.divmod(np.arange(samples**2), samples) - np.array([[(samples - 1) / 2]])
-    middles = bits @ np.stack([right, down], axis=1) / np.maximum(counts, 1)[:, None]
-    return np.column_stack([counts, middles, bits.argmax(axis=1)])
+    return draw_faded
 
 
 @wp.func
-def sample_of(pixel: Sample, triangle: int, anchor: wp.vec2i, step: wp.vec2f) -> Sample:
-    """A point of a pixel, a step from its centre [2^-16 px], in a triangle with this anchor."""
-    here = Sample()
-    here.triangle = triangle
-    here.place = pixel.place + wp.vec2i(int(wp.rint(step[0])), int(wp.rint(step[1])))
-    here.offset = offset_of(here.place, anchor)
-    here.row = pixel.row
-    here.column = pixel.column
+def point_at(scene: Scene, points: wp.array(dtype=int), row: int, column: int, j: int) -> Sample:
+    """A point of a stretch that begins with a column."""
+    at = column + points[wp.static(PIXEL) + j]
+    x = scene.columns[at] + points[wp.static(RIGHT) + j]
+    place = wp.vec2i(x, scene.rows[row] + points[wp.static(DOWN) + j])
+    here = sample_at(scene, points[wp.static(TRIANGLE) + j], place)
+    here.row = row
+    here.column = at
     return here
 
 
 @cache
-def _even_look(look: Any, samples: int) -> Any:
-    """A wp.func that sees a pixel where every triangle has one colour: a mean of samples."""
+def _stretch_drawer(coats: tuple[Coat, ...], samples: int, fades: bool) -> Any:
+    """A wp.func that draws a stretch of a row."""
+    channels = channels_of(coats)
+    color_at, list_points = stack_of(coats), point_lister(samples)
+    store = store_opaque if channels == 3 else store_transparent
+    draw_faded = _faded_drawer(color_at, samples, store)
 
     @wp.func
-    def pixel_look(
+    def draw_stretch(
         scene: Scene,
         parameters: wp.array(dtype=StyleParameters),
         layers: LayerTables,
         line: wp.array(dtype=int),
-        pixel: Sample,
-    ) -> Seen:
-        """The mean over the samples, or one look where they all lie in one triangle."""
-        first = pixel.column * wp.static(samples)
-        width = line.shape[0] / wp.static(samples)
-        here = Sample()
-        here.triangle = line[first]
-        if is_whole(line, first, width, wp.static(samples - 1)):
-            even = look(scene, parameters, layers, here)
-            even.calm = 0.0
-            return even
-        seen = Seen()
-        for i in range(wp.static(samples)):
-            for j in range(wp.static(samples)):
-                here.triangle = line[i * width + first + j]
-                part = look(scene, parameters, layers, here)
-                seen.color += part.color
-                seen.opacity += part.opacity
-        seen.color = seen.color * wp.static(1.0 / (samples * samples))
-        seen.opacity = seen.opacity * wp.static(1.0 / (samples * samples))
-        return seen
+        points: wp.array(dtype=int),
+        row: int,
+        column: int,
+        address: wp.uint64,
+    ) -> int:
+        """Draw the pixels from a column on, as many as make a stretch: their number."""
+        columns, width = scene.columns.shape[0], line.shape[0] / wp.static(samples)
+        parts = scene.parts.ptr
+        listed = list_points(line.ptr, width, column, columns - column, parts, points.ptr)
+        red, green, blue, opacity = Values(), Values(), Values(), Values()
+        j = int(0)
+        while j < (listed[2] + wp.static(LANES - 1)) & wp.static(-LANES):
+            share = float(points[wp.static(COUNT) + j]) * wp.static(1.0 / samples**2)
+            here = point_at(scene, points, row, column, j)
+            here.extent = extent_of(scene, share, wp.static(samples))
+            color = color_at(scene, parameters, here)
+            red[j] = share * (color[3] * color[0])
+            green[j] = share * (color[3] * color[1])
+            blue[j] = share * (color[3] * color[2])
+            opacity[j] = share * color[3]
+            j += 1
+        for j in range(listed[1], listed[2]):
+            k = points[wp.static(PIXEL) + j]
+            red[k] += red[j]
+            green[k] += green[j]
+            blue[k] += blue[j]
+            opacity[k] += opacity[j]
+        out = wp.array(ptr=address, shape=(wp.static(channels) * columns,), dtype=wp.uint8)
+        k = int(0)
+        while k < listed[0]:
+            store(out, k, red[k], green[k], blue[k], opacity[k])
+            k += 1
+        if wp.static(fades):
+            draw_faded(scene, parameters, layers, line, points, listed, row, column, out)
+        return listed[0]
 
-    return pixel_look
+    return draw_stretch
 
 
-@cache
-def _pixel_look(look: Any, samples: int, fades: bool) -> Any:
-    """A wp.func that sees a pixel: as a whole, triangle by triangle or sample by sample.
-
-    Warp hands a scene over by value. Where a function is called at one place only the compiler
-    puts it there and nothing is copied: so there is one loop for all three cases.
-    """
-    every = (1 << samples * samples) - 1
-
-    @wp.func
-    def samples_in(line: wp.array(dtype=int), first: int, triangle: int) -> int:
-        """The samples of a pixel that lie in a triangle, as bits; without a branch."""
-        width = line.shape[0] / wp.static(samples)
-        found = int(0)
-        for k in range(wp.static(samples * samples)):
-            other = line[(k // samples) * width + first + k % samples]
-            found += wp.where(other == triangle, 1 << k, 0)
-        return found
-
-    @wp.func
-    def pixel_look(
-        scene: Scene,
-        parameters: wp.array(dtype=StyleParameters),
-        layers: LayerTables,
-        line: wp.array(dtype=int),
-        pixel: Sample,
-    ) -> Seen:
-        """The mean over the parts of the pixel."""
-        first = pixel.column * wp.static(samples)
-        width = line.shape[0] / wp.static(samples)
-        whole = is_whole(line, first, width, wp.static(samples - 1))
-        by_sample = bool(False)
-        # as far as a pixel's corner is from its centre, also where a map stretches by a quarter
-        near = 0.884 * pixel.extent
-        seen = Seen()
-        seen.clear = FAR
-        left = int(wp.static(every))
-        while left != 0:
-            triangle = line[first]
-            share = float(1.0)
-            step = wp.vec2f()
-            own = left
-            if by_sample or not whole:
-                k = int(scene.parts[left][3])
-                triangle = line[(k / wp.static(samples)) * width + first + k % wp.static(samples)]
-                own = wp.where(by_sample, left & -left, left & samples_in(line, first, triangle))
-                part = scene.parts[own]
-                share = part[0] * wp.static(1.0 / samples**2)
-                step = wp.cw_mul(wp.vec2f(part[1], part[2]), scene.sample_size)
-            left = left ^ own
-            here = sample_of(pixel, triangle, scene.anchors[triangle], step)
-            # as wide as a strip of so many samples beside the border
-            here.extent = pixel.extent * wp.max(share, wp.static(1.0 / samples))
-            found = look(scene, parameters, layers, here)
-            seen.color += share * found.color
-            seen.opacity += share * found.opacity
-            seen.clear = wp.min(seen.clear, found.clear)
-            seen.calm = wp.where(whole, found.calm, 0.0)
-            if wp.static(fades) and left == 0 and not by_sample and seen.clear < near:
-                by_sample = True
-                left = wp.static(every)
-                seen = Seen()
-        return seen
-
-    return pixel_look
+def channels_of(coats: tuple[Coat, ...]) -> int:
+    """Numbers of a pixel: 3, or 4 with alpha if no coat is opaque."""
+    return 3 if any(coat.is_opaque for coat in coats) else 4
 
 
 @cache
 def _shade_kernel(coats: tuple[Coat, ...], samples: int, fades: bool) -> Any:
-    is_opaque = any(coat.is_opaque for coat in coats)
-    pixel_of = opaque_pixel if is_opaque else transparent_pixel
-    pixel_type = wp.vec3ub if is_opaque else wp.vec4ub
-    color_at = stack_of(coats)
-    look = fading_look(color_at) if fades else opaque_look(color_at)
-    is_even = all(coat.is_even for coat in coats) and not fades
-    pixel_look = _even_look(look, samples) if is_even else _pixel_look(look, samples, fades)
+    draw_stretch, channels = _stretch_drawer(coats, samples, fades), channels_of(coats)
 
-    @wp.kernel(enable_backward=False, module="unique")
+    @wp.kernel(module="unique", module_options=SHADE_OPTIONS)
     def shade(
         span: wp.array(dtype=wp.vec2i),
         # In:
@@ -223,39 +185,28 @@ def _shade_kernel(coats: tuple[Coat, ...], samples: int, fades: bool) -> Any:
         triangle_of: wp.array2d(dtype=int),
         top: int,
         # Out:
-        canvas_out: wp.array2d(dtype=pixel_type),
+        points_out: wp.array2d(dtype=int),
+        canvas_out: wp.array3d(dtype=wp.uint8),
     ):
         """Shade one row of a band of the output."""
         band_row = span[0][0] + wp.tid()
         if band_row >= span[0][1]:
             return
-        row = top + band_row
-        width = triangle_of.shape[1]
-        # a plain array of the row's samples: its index is never negative and its stride is known
-        pitch = wp.uint64(width) * wp.uint64(wp.static(4 * samples))
-        line = wp.array(
-            ptr=triangle_of.ptr + wp.uint64(band_row) * pitch,
-            shape=(wp.static(samples) * width,),
+        # plain arrays of one row: indices are never negative, so the compiler works in blocks
+        length = wp.static(samples) * triangle_of.shape[1]
+        begin = wp.uint64(band_row) * wp.uint64(4)
+        line = wp.array(ptr=triangle_of.ptr + begin * wp.uint64(length), shape=(length,), dtype=int)
+        points = wp.array(
+            ptr=points_out.ptr + begin * wp.uint64(wp.static(LIST)),
+            shape=(wp.static(LIST),),
             dtype=int,
         )
-        pixel = Sample()
-        pixel.row = row
-        pixel.extent = scene.pixel
-        y = scene.rows[row]
-        calm_share = CAUTION * wp.static(FIXED / samples) / scene.sample_size[0]
+        row = top + band_row
         column = int(0)
         while column < canvas_out.shape[1]:
-            pixel.column = column
-            pixel.place = wp.vec2i(scene.columns[column], y)
-            seen = pixel_look(scene, parameters, layers, line, pixel)
-            color = pixel_of(seen)
-            canvas_out[row, column] = color
-            column += 1
-            # the pixels up to here lie in the same triangle and look the same
-            alike = wp.min(column + int(seen.calm * calm_share), canvas_out.shape[1])
-            while column < alike:
-                canvas_out[row, column] = color
-                column += 1
+            pixel = wp.uint64(row) * wp.uint64(canvas_out.shape[1]) + wp.uint64(column)
+            address = canvas_out.ptr + pixel * wp.uint64(wp.static(channels))
+            column += draw_stretch(scene, parameters, layers, line, points, row, column, address)
 
     return shade
 
@@ -271,6 +222,8 @@ def record_shade(
     fades: bool,
     triangle_of: wp.array,
     top: int,
+    flows_on: bool,
+    points_out: wp.array,
     canvas_out: wp.array,
 ) -> Phase:
     """Prepare the launch that shades a band of the output, row by row.
@@ -285,8 +238,12 @@ def record_shade(
         fades: Whether any triangle fades; else `layers` is not looked at.
         triangle_of: Triangle of every sample of a band, see `gbuffer`.
         top: The output row with which the band begins.
-        canvas_out: Code values, [rows, columns]: vec3ub if a coat is opaque, else vec4ub with
-            straight alpha.
+        flows_on: Whether the next band has as many rows: then each part of it finds its own rows
+            where it found them in this one, and no part waits for another.
+        points_out: Room for the points of a stretch of every row, [rows, LIST] int32.
+        canvas_out: Code values, [rows, columns, 3] if a coat is opaque, else [rows, columns, 4]
+            with straight alpha.
     """
     inputs = [scene, parameters, layers, triangle_of, top]
-    return device.record(_shade_kernel(coats, samples, fades), inputs, [canvas_out])
+    kernel = _shade_kernel(coats, samples, fades)
+    return device.record(kernel, inputs, [points_out, canvas_out], flows_on=flows_on)

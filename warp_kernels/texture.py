@@ -65,8 +65,10 @@ def pack(textures: list[Texture | None]) -> tuple[np.ndarray, np.ndarray, list[t
 def _wrapped(index: int, count: int, repeats: bool) -> int:
     """The index itself, or that of the texel that stands for it beyond the border."""
     if repeats:
-        rest = index % count
-        return wp.where(rest < 0, rest + count, rest)
+        # the processor divides whole numbers one by one, others sixteen at a time
+        rest = index - count * int(wp.floor(float(index) / float(count)))
+        rest = wp.where(rest < 0, rest + count, rest)
+        return wp.where(rest >= count, rest - count, rest)
     return wp.clamp(index, 0, count - 1)
 
 
@@ -108,10 +110,21 @@ def detail_for(scene: Scene, parameters: StyleParameters, footprint: float) -> f
         parameters: Says which are the style's.
         footprint: Size of an output pixel, as a part of the image's longer side.
     """
-    table = scene.levels[parameters.first_level]
+    table = level_of(scene, parameters.first_level)
     texels = footprint * float(wp.max(table[2], table[3]))
     last = float(parameters.level_count - 1)
     return wp.clamp(wp.log2(wp.max(texels, 1.0e-6)), 0.0, last)
+
+
+@wp.func
+def level_of(scene: Scene, level: int) -> wp.vec4i:
+    """A row of `Scene.levels`."""
+    return wp.vec4i(
+        scene.levels[level, 0],
+        scene.levels[level, 1],
+        scene.levels[level, 2],
+        scene.levels[level, 3],
+    )
 
 
 @wp.func
@@ -133,14 +146,11 @@ def texture_at(
         detail: See `detail_for`.
         repeats: Whether the image is a tile, else its border goes on for ever.
     """
-    level = wp.min(int(detail), wp.max(parameters.level_count - 2, 0))
+    last = wp.max(parameters.level_count - 1, 0)
+    level = wp.min(int(detail), wp.max(last - 1, 0))
     part = detail - float(level)
-    value = float(0.0)
-    weight = 1.0 - part
-    while weight > 0.0:
-        table = scene.levels[parameters.first_level + level]
-        value += weight * level_at(scene.texels, table, image, at, repeats)
-        level += 1
-        weight = part
-        part = 0.0
-    return value
+    # both without a branch, also where one has no weight: many points are looked at together
+    finer = level_of(scene, parameters.first_level + level)
+    coarser = level_of(scene, parameters.first_level + wp.min(level + 1, last))
+    value = (1.0 - part) * level_at(scene.texels, finer, image, at, repeats)
+    return value + part * level_at(scene.texels, coarser, image, at, repeats)

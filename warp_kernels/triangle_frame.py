@@ -2,7 +2,7 @@
 
 import warp as wp
 
-from warp_kernels.scene import Sample, Scene
+from warp_kernels.scene import Sample, Scene, incentre_of, side_of
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 
@@ -10,21 +10,20 @@ wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 @wp.func
 def base_direction(scene: Scene, triangle: int) -> wp.vec2f:
     """Unit vector along the base edge."""
-    base = scene.sides[triangle, 0]
+    base = side_of(scene, triangle, 0)
     return base / wp.max(wp.length(base), 1.0e-6)
 
 
 @wp.func
 def from_incentre(scene: Scene, sample: Sample) -> wp.vec2f:
     """Position seen from the centre of the incircle [px]."""
-    circle = scene.incircles[sample.triangle]
-    return sample.offset - wp.vec2f(circle[0], circle[1])
+    return sample.offset - incentre_of(scene, sample.triangle)
 
 
 @wp.func
 def inradius(scene: Scene, sample: Sample) -> float:
     """Radius of the incircle [px]."""
-    return wp.max(scene.incircles[sample.triangle][2], 1.0e-3)
+    return wp.max(scene.incircles[sample.triangle, 2], 1.0e-3)
 
 
 @wp.func
@@ -36,7 +35,8 @@ def chance(scene: Scene, triangle: int, number: int) -> float:
 @wp.func
 def coverage_of(depth: float, extent: float) -> float:
     """Part of a small square that lies inside of a border at `depth` from its middle, both px."""
-    return wp.clamp(depth / extent + 0.5, 0.0, 1.0)
+    # a stack asks for several borders at one extent: the inverse is worked out once
+    return wp.clamp(depth * (1.0 / extent) + 0.5, 0.0, 1.0)
 
 
 @wp.func

@@ -17,17 +17,21 @@ def triangle_of_pixels(device: Device, mesh: Mesh) -> np.ndarray:
     """
     vertices = device.empty(mesh.vertex_count, wp.vec2d)
     triangles = device.empty(mesh.triangle_count, wp.vec3i)
+    count = device.empty(1, int)
     labels = device.empty((mesh.height, mesh.width), wp.int32)
     device.write(vertices, mesh.vertices)
     device.write(triangles, mesh.triangles)
+    device.write(count, np.array([mesh.triangle_count]))
     phase = record_gbuffer(
         device,
         vertices=vertices,
         triangles=triangles,
+        count=count,
         scale=(1.0, 1.0),
         first_row=0,
+        samples=1,
         triangle_out=labels,
     )
-    phase.resize(mesh.triangle_count)
+    phase.resize(mesh.height, threads=mesh.triangle_count)
     device.run([phase])
     return device.read(labels, mesh.height)

@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 
 import warp as wp
 
-from warp_kernels.scene import Ink, Sample, Scene, StyleParameters
+from warp_kernels.scene import Ink, Sample, Scene, StyleParameters, color_of, incentre_of, side_of
 from warp_kernels.styles.style import Style
 from warp_kernels.triangle_frame import coverage_of, from_incentre, inradius
 
@@ -29,7 +29,10 @@ def depth_in_chain(p: wp.vec2f, corner: wp.vec2f, radius: float, smallest: float
     sine = wp.min(radius / reach, 0.999)
     factor = (1.0 - sine) / (1.0 + sine)
     towards = corner / reach
-    left = wp.max(reach - wp.dot(p, towards), 1.0e-6)
+    along = wp.dot(p, towards)
+    if along <= radius:
+        return radius - wp.length(p)  # beside the incircle at most: most points are
+    left = wp.max(reach - along, 1.0e-6)
     # between two discs the border lies where they touch: at (1 - sine) of the nearer one's way
     number = wp.ceil(wp.log(left / (reach * (1.0 + sine))) / wp.log(factor)) - 1.0
     size = wp.pow(factor, wp.max(number, 0.0))
@@ -45,17 +48,16 @@ def packed_color(scene: Scene, parameters: StyleParameters, sample: Sample, belo
     t = sample.triangle
     p = from_incentre(scene, sample)
     radius = inradius(scene, sample)
-    centre = wp.vec2f(scene.incircles[t][0], scene.incircles[t][1])
+    centre = incentre_of(scene, t)
     smallest = parameters.numbers[1]
     depth = depth_in_chain(p, -centre, radius, smallest)
-    depth = wp.max(depth, depth_in_chain(p, scene.sides[t, 0] - centre, radius, smallest))
-    depth = wp.max(depth, depth_in_chain(p, scene.sides[t, 1] - centre, radius, smallest))
+    depth = wp.max(depth, depth_in_chain(p, side_of(scene, t, 0) - centre, radius, smallest))
+    depth = wp.max(depth, depth_in_chain(p, side_of(scene, t, 1) - centre, radius, smallest))
     ink = Ink()
-    ink.color = scene.colors[t]
+    ink.color = color_of(scene, t)
     ink.opacity = 1.0
     depth -= 0.5 * parameters.numbers[0]
     ink.coverage = coverage_of(depth, sample.extent)
-    ink.calm = depth - 0.5 * sample.extent
     return ink
 
 

@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 
 import warp as wp
 
-from warp_kernels.scene import Ink, Numbers, Sample, Scene, StyleParameters
+from warp_kernels.scene import Ink, Numbers, Sample, Scene, StyleParameters, prepared_for, side_of
 from warp_kernels.styles.color import parse_color
 from warp_kernels.styles.style import Style
 from warp_kernels.triangle_frame import line_coverage, smooth_rise
@@ -20,17 +20,11 @@ def line_strength(side: wp.vec2f, fade: float) -> float:
 
 
 @wp.func
-def calm_beside(distance: float, slope: float) -> float:
-    """How far it is to the right to a line that comes nearer by a slope [px], see `Ink`."""
-    return wp.max(distance, 0.0) / wp.max(-slope, 1.0e-6)
-
-
-@wp.func
 def prepare_edges(scene: Scene, parameters: StyleParameters, triangle: int) -> Numbers:
     """The sides as `Scene.lines` has them, and how strong the lines along them are."""
     lines = scene.lines[triangle]
-    base = scene.sides[triangle, 0]
-    last = scene.sides[triangle, 1]
+    base = side_of(scene, triangle, 0)
+    last = side_of(scene, triangle, 1)
     fade = parameters.numbers[4]
     result = Numbers()
     for i in range(3):
@@ -50,18 +44,14 @@ def edge_color(scene: Scene, parameters: StyleParameters, sample: Sample, below:
 
     Only the triangle's own sides are looked at: whatever lies outside lies behind one of them.
     """
-    n = scene.prepared[parameters.row, sample.triangle]
+    n = prepared_for(scene, parameters, sample.triangle)
     x = sample.offset[0]
     y = sample.offset[1]
     half_width = parameters.numbers[3]
     first = n[0] * x + n[1] * y + n[2]
     second = n[3] * x + n[4] * y + n[5]
     third = n[6] * x + n[7] * y + n[8]
-    # a line that is half a pixel farther away does not touch the pixel
-    reach = half_width + 0.5 * sample.extent
-    calm = wp.min(calm_beside(first - reach, n[0]), calm_beside(second - reach, n[3]))
     ink = Ink()
-    ink.calm = wp.min(calm, calm_beside(third - reach, n[6]))
     ink.color = wp.vec3f(parameters.numbers[0], parameters.numbers[1], parameters.numbers[2])
     ink.opacity = 1.0
     ink.coverage = wp.max(

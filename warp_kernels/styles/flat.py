@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 
 import warp as wp
 
-from warp_kernels.scene import FAR, Ink, Sample, Scene, StyleParameters, full_ink
+from warp_kernels.scene import Ink, Sample, Scene, StyleParameters, color_of, full_ink
 from warp_kernels.styles.style import Style
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
@@ -14,9 +14,7 @@ wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 @wp.func
 def flat_color(scene: Scene, parameters: StyleParameters, sample: Sample, below: wp.vec4f) -> Ink:
     """The triangle's mean colour."""
-    ink = full_ink(scene.colors[sample.triangle])
-    ink.calm = FAR
-    return ink
+    return full_ink(color_of(scene, sample.triangle))
 
 
 @dataclass(frozen=True)

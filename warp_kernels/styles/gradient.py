@@ -5,7 +5,17 @@ from typing import Any, ClassVar
 
 import warp as wp
 
-from warp_kernels.scene import Ink, Numbers, Sample, Scene, StyleParameters, full_ink
+from warp_kernels.scene import (
+    Ink,
+    Numbers,
+    Sample,
+    Scene,
+    StyleParameters,
+    color_of,
+    full_ink,
+    prepared_for,
+    side_of,
+)
 from warp_kernels.styles.style import Style
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
@@ -13,11 +23,11 @@ wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 
 @wp.func
 def prepare_gradient(scene: Scene, parameters: StyleParameters, triangle: int) -> Numbers:
-    """Linear colour from corner 0, the centroid, and whether the colour is curved."""
-    centre = (scene.sides[triangle, 0] + scene.sides[triangle, 1]) / 3.0
+    """Linear colour from corner 0, and the centroid."""
+    centre = (side_of(scene, triangle, 0) + side_of(scene, triangle, 1)) / 3.0
     right = scene.gradients[triangle, 0]
     down = scene.gradients[triangle, 1]
-    start = scene.colors[triangle] - centre[0] * right - centre[1] * down
+    start = color_of(scene, triangle) - centre[0] * right - centre[1] * down
     result = Numbers()
     for c in range(3):
         result[c] = start[c]
@@ -25,8 +35,16 @@ def prepare_gradient(scene: Scene, parameters: StyleParameters, triangle: int) -
         result[6 + c] = down[c]
     result[9] = centre[0]
     result[10] = centre[1]
-    result[11] = float(scene.curved[0])
     return result
+
+
+@wp.func
+def bend(scene: Scene, triangle: int, channel: int, right: float, down: float) -> float:
+    """What a quadratic colour adds at a place seen from the centroid."""
+    first = 12 * triangle + channel
+    table = wp.array(ptr=scene.curvatures.ptr, shape=(12 * scene.curvatures.shape[0],), dtype=float)
+    bent = right * table[first + 3] + down * table[first + 6]
+    return table[first] + right * bent + down * down * table[first + 9]
 
 
 @wp.func
@@ -35,21 +53,20 @@ def gradient_color(
 ) -> Ink:
     """The best linear or quadratic colour at the sample, within the range of code values."""
     t = sample.triangle
-    n = scene.prepared[parameters.row, t]
+    n = prepared_for(scene, parameters, t)
     at = sample.offset
-    color = wp.vec3f(
-        n[0] + at[0] * n[3] + at[1] * n[6],
-        n[1] + at[0] * n[4] + at[1] * n[7],
-        n[2] + at[0] * n[5] + at[1] * n[8],
-    )
-    if n[11] != 0.0:
-        away = at - wp.vec2f(n[9], n[10])
-        bent = away[0] * scene.curvatures[t, 1] + away[1] * scene.curvatures[t, 2]
-        color += scene.curvatures[t, 0] + away[0] * bent
-        color += away[1] * away[1] * scene.curvatures[t, 3]
-    red = wp.clamp(color[0], 0.0, 255.0)
-    green = wp.clamp(color[1], 0.0, 255.0)
-    return full_ink(wp.vec3f(red, green, wp.clamp(color[2], 0.0, 255.0)))
+    red = n[0] + at[0] * n[3] + at[1] * n[6]
+    green = n[1] + at[0] * n[4] + at[1] * n[7]
+    blue = n[2] + at[0] * n[5] + at[1] * n[8]
+    if scene.curved[0] != 0:
+        right = at[0] - n[9]
+        down = at[1] - n[10]
+        red += bend(scene, t, 0, right, down)
+        green += bend(scene, t, 1, right, down)
+        blue += bend(scene, t, 2, right, down)
+    red = wp.clamp(red, 0.0, 255.0)
+    green = wp.clamp(green, 0.0, 255.0)
+    return full_ink(wp.vec3f(red, green, wp.clamp(blue, 0.0, 255.0)))
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 
 import warp as wp
 
-from warp_kernels.scene import Ink, Sample, Scene, StyleParameters
+from warp_kernels.scene import Ink, Sample, Scene, StyleParameters, color_of
 from warp_kernels.styles.style import Style
 from warp_kernels.triangle_frame import coverage_of, from_incentre, inradius, smooth_rise
 
@@ -21,7 +21,7 @@ def incircle_color(
     away = wp.length(from_incentre(scene, sample))
     softness = wp.max(parameters.numbers[1], 1.0e-3)
     ink = Ink()
-    ink.color = scene.colors[sample.triangle]
+    ink.color = color_of(scene, sample.triangle)
     ink.opacity = 1.0 - smooth_rise((away / radius - 1.0 + softness) / softness)
     ink.coverage = coverage_of(radius - away, sample.extent)
     return ink

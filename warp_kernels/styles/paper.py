@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 import numpy as np
 import warp as wp
 
-from warp_kernels.scene import Ink, Numbers, Sample, Scene, StyleParameters, full_ink
+from warp_kernels.scene import Ink, Numbers, Sample, Scene, StyleParameters, full_ink, prepared_for
 from warp_kernels.styles.color import parse_color
 from warp_kernels.styles.style import ReadPicture, Style
 from warp_kernels.styles.texture import relit
@@ -57,7 +57,7 @@ def prepare_paper(scene: Scene, parameters: StyleParameters, triangle: int) -> N
 @wp.func
 def paper_color(scene: Scene, parameters: StyleParameters, sample: Sample, below: wp.vec4f) -> Ink:
     """The paper's colour, relit by the grain; each triangle lies elsewhere in the tile."""
-    n = scene.prepared[parameters.row, sample.triangle]
+    n = prepared_for(scene, parameters, sample.triangle)
     x = sample.offset[0]
     y = sample.offset[1]
     at = wp.vec2f(n[2] + n[0] * x + n[1] * y, n[3] + n[0] * y - n[1] * x)

@@ -5,7 +5,16 @@ from typing import Any, ClassVar
 
 import warp as wp
 
-from warp_kernels.scene import Ink, Sample, Scene, StyleParameters, depth_inside
+from warp_kernels.scene import (
+    Ink,
+    Sample,
+    Scene,
+    StyleParameters,
+    color_of,
+    depth_inside,
+    incentre_of,
+    side_of,
+)
 from warp_kernels.styles.style import Style
 from warp_kernels.triangle_frame import (
     coverage_of,
@@ -36,15 +45,14 @@ def shrunk_color(scene: Scene, parameters: StyleParameters, sample: Sample, belo
     depth = depth_inside(scene.lines[t], sample.offset) - (radius - core)
     if depth < 0.0:
         size = core / radius
-        centre = wp.vec2f(scene.incircles[t][0], scene.incircles[t][1])
-        first = size * (scene.sides[t, 0] - centre)
-        second = size * (scene.sides[t, 1] - centre)
+        centre = incentre_of(scene, t)
+        first = size * (side_of(scene, t, 0) - centre)
+        second = size * (side_of(scene, t, 1) - centre)
         depth = -outside_of(from_incentre(scene, sample), -size * centre, first, second)
     ink = Ink()
-    ink.color = scene.colors[t]
+    ink.color = color_of(scene, t)
     ink.opacity = 1.0
     ink.coverage = coverage_of(depth + rounding, sample.extent)
-    ink.calm = depth + rounding - 0.5 * sample.extent
     return ink
 
 

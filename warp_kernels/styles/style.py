@@ -52,7 +52,7 @@ class Style:
     covers: ClassVar[bool] = True
     """Whether its ink is opaque everywhere."""
     is_even: ClassVar[bool] = False
-    """Whether its ink is the same all over a triangle: borders are then drawn in less time."""
+    """Whether its ink is the same all over a triangle: the shapes of these are then not needed."""
     needs_source: ClassVar[bool] = False
     """Whether the shader looks at the source picture."""
 

@@ -6,7 +6,17 @@ from typing import Any, ClassVar
 import warp as wp
 
 from warp_kernels.errors import OptionError, TrimotionError
-from warp_kernels.scene import Ink, Numbers, Sample, Scene, StyleParameters, full_ink
+from warp_kernels.scene import (
+    Ink,
+    Numbers,
+    Sample,
+    Scene,
+    StyleParameters,
+    color_of,
+    full_ink,
+    prepared_for,
+    side_of,
+)
 from warp_kernels.styles.pictures import PICTURES
 from warp_kernels.styles.style import ReadPicture, Style
 from warp_kernels.texture import Texture as Texels
@@ -32,7 +42,7 @@ MOST_LOOKS = wp.constant(4.0)
 @wp.func
 def ground_below(scene: Scene, sample: Sample, below: wp.vec4f) -> wp.vec3f:
     """What lies below, and the triangle's mean colour where that is transparent."""
-    color = scene.colors[sample.triangle]
+    color = color_of(scene, sample.triangle)
     return color + below[3] * (wp.vec3f(below[0], below[1], below[2]) - color)
 
 
@@ -53,8 +63,8 @@ def prepare_texture(scene: Scene, parameters: StyleParameters, triangle: int) ->
 
     Source: McCormack et al., Feline: Fast Elliptical Lines for Anisotropic Texture Mapping (1999).
     """
-    first = scene.sides[triangle, 0]
-    second = scene.sides[triangle, 1]
+    first = side_of(scene, triangle, 0)
+    second = side_of(scene, triangle, 1)
     area = wp.max(wp.abs(first[0] * second[1] - first[1] * second[0]), 1.0e-6)
     up = wp.vec2f(-first[1], first[0]) / area
     left = wp.vec2f(second[1], -second[0]) / area + 0.5 * up
@@ -83,7 +93,7 @@ def textured_color(
     scene: Scene, parameters: StyleParameters, sample: Sample, below: wp.vec4f
 ) -> Ink:
     """What lies below, relit by the texture; the picture's lower edge is the base edge."""
-    n = scene.prepared[parameters.row, sample.triangle]
+    n = prepared_for(scene, parameters, sample.triangle)
     left = n[LEFT] * sample.offset[0] + n[LEFT + 1] * sample.offset[1]
     up = n[UP] * sample.offset[0] + n[UP + 1] * sample.offset[1]
     step = wp.vec2f(n[STEP], n[STEP + 1])

@@ -6,8 +6,18 @@ The style hands over these numbers, in this order, and colours as light: squares
 import warp as wp
 
 from warp_kernels.blend import to_code, to_light
-from warp_kernels.scene import Ink, Numbers, Sample, Scene, StyleParameters, full_ink
-from warp_kernels.texture import LINE
+from warp_kernels.scene import (
+    Ink,
+    Numbers,
+    Sample,
+    Scene,
+    StyleParameters,
+    color_of,
+    full_ink,
+    prepared_for,
+    side_of,
+)
+from warp_kernels.texture import LINE, level_of
 from warp_kernels.tones.lookup import STEPS, ink_at, level_for, pair_of
 from warp_kernels.tones.tonal_art_map import DARKEST
 
@@ -155,11 +165,11 @@ def coloring_of(n: Numbers, color: wp.vec3f) -> Coloring:
 @wp.func
 def edge_from(scene: Scene, triangle: int, corner: int) -> wp.vec2f:
     """The edge to the next corner from a corner; 3 is corner 0 again."""
-    side = scene.sides[triangle, 0]
+    side = side_of(scene, triangle, 0)
     if corner == 1:
-        side = scene.sides[triangle, 1] - scene.sides[triangle, 0]
+        side = side_of(scene, triangle, 1) - side_of(scene, triangle, 0)
     if corner == 2:
-        side = -scene.sides[triangle, 1]
+        side = -side_of(scene, triangle, 1)
     return side
 
 
@@ -200,16 +210,16 @@ def prepare_strokes(scene: Scene, parameters: StyleParameters, triangle: int) ->
     base edge turns a little.
     """
     n = parameters.numbers
-    coloring = coloring_of(n, scene.colors[triangle])
+    coloring = coloring_of(n, color_of(scene, triangle))
     pair = pair_of(coloring.amount)
     level = level_for(n[TEXELS] * scene.pixel * SHARPNESS, parameters.level_count)
-    table = scene.levels[parameters.first_level + level]
+    table = level_of(scene, parameters.first_level + level)
     side = table[2]
     edge = base_edge(scene, triangle)
     steps = n[TEXELS] * wp.static(float(STEPS)) / float(1 << level)
     across = steps * (edge[0] * n[COSINE] - edge[1] * n[SINE])
     down = steps * (edge[0] * n[SINE] + edge[1] * n[COSINE])
-    centre = (scene.sides[triangle, 0] + scene.sides[triangle, 1]) / 3.0
+    centre = (side_of(scene, triangle, 0) + side_of(scene, triangle, 1)) / 3.0
     place = float(side * STEPS) * place_of_centre(scene, triangle, n[SEED])
     half = wp.static(0.5 * STEPS)
     result = Numbers()
@@ -239,7 +249,7 @@ def strokes_on_paper(
     scene: Scene, parameters: StyleParameters, sample: Sample, below: wp.vec4f
 ) -> Ink:
     """Strokes and the paper that they are drawn on."""
-    n = scene.prepared[parameters.row, sample.triangle]
+    n = prepared_for(scene, parameters, sample.triangle)
     paper = three(n, PAPER)
     covered = covered_at(scene, n, sample.offset)
     return full_ink(to_code(paper + covered * (three(n, PEN) - paper)))
@@ -250,7 +260,7 @@ def strokes_alone(
     scene: Scene, parameters: StyleParameters, sample: Sample, below: wp.vec4f
 ) -> Ink:
     """Strokes on what lies below."""
-    n = scene.prepared[parameters.row, sample.triangle]
+    n = prepared_for(scene, parameters, sample.triangle)
     ink = Ink()
     ink.color = to_code(three(n, PEN))
     ink.opacity = 1.0
