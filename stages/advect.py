@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stages.cover import collapse_covered, collapse_vertices
+from stages.cover import collapse_covered
 from stages.flows.passage import Passage
 from stages.mesh import Mesh, heights_of
 
@@ -27,9 +27,9 @@ class Carried:
 def advect(mesh: Mesh, passage: Passage) -> Carried:
     """Move every vertex by the motion of the picture under it.
 
-    Border vertices slide along their border, corners stay. Vertices that something comes to lie
-    over go. Triangles that would fold are covered and collapse; where that cannot be, the steps of
-    their vertices are halved until they do not fold.
+    Border vertices slide along their border, corners stay. Triangles that would fold are covered
+    and collapse; where that cannot be, the steps of their vertices are halved until they do not
+    fold.
 
     Args:
         mesh: A valid mesh.
@@ -42,9 +42,8 @@ def advect(mesh: Mesh, passage: Passage) -> Carried:
         Triangulation, 2018, Sec. 6.3).
     Deviation: it does not move that mesh; the flow lets vertices follow fast motion.
     """
-    steps, trust, covered = passage.follow(mesh.vertices)
-    kept, steps = collapse_vertices(mesh, sliding(mesh, steps), covered)
-    kept, steps = collapse_covered(kept, steps, LOWEST)
+    steps, trust = passage.follow(mesh.vertices)
+    kept, steps = collapse_covered(mesh, sliding(mesh, steps), LOWEST)
     places = np.searchsorted(mesh.vertex_ids, kept.vertex_ids)  # ids ascend with the rows
     return Carried(kept.moved(kept.vertices + unfolded(kept, steps)), trust[places])
 

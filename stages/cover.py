@@ -10,51 +10,8 @@ from stages.mesh import Mesh, previous_corner
 
 MOST_ROUNDS = 30
 """Rounds of collapses; a band as wide as a fast step holds several layers of triangles."""
-FEW_ROUNDS = 4
-"""Rounds in which covered vertices collapse: neighbours cannot go at once."""
 LEAST_RELIEF = 1e-9
 """A collapse must lessen what is missing by more than this, which is rounding [px]."""
-
-
-def collapse_vertices(
-    mesh: Mesh, steps: np.ndarray, covered: np.ndarray
-) -> tuple[Mesh, np.ndarray]:
-    """Collapse vertices whose place something else takes.
-
-    Left alone they would ride the outline of what has come over them, neither with it nor with
-    what they stood on. Each moves into the neighbour that stays and leaves the highest triangles
-    behind; those on the border and those that cannot collapse remain.
-
-    Args:
-        mesh: A valid mesh.
-        steps: Where its vertices go [px], shape [V, 2].
-        covered: Which vertices are to go, shape [V] bool.
-
-    Returns:
-        A valid mesh at the old places, and the steps of its vertices.
-    """
-    going = covered & ~(mesh.on_left_right | mesh.on_top_bottom)
-    for _ in range(FEW_ROUNDS):
-        half_edges = np.flatnonzero(going[mesh.triangles.reshape(-1)])
-        half_edges = half_edges[~going[edge_ends(mesh, half_edges)[1]]]
-        half_edges = half_edges[collapsible(mesh, half_edges)]
-        half_edges = _highest_first(mesh.moved(mesh.vertices + steps), half_edges)
-        half_edges = half_edges[independent_collapses(mesh, half_edges)]
-        if not len(half_edges):
-            break
-        stays = np.ones(mesh.vertex_count, dtype=bool)
-        stays[mesh.triangles.reshape(-1)[half_edges]] = False
-        mesh = collapse_edges(mesh, half_edges)
-        steps, going = steps[stays], going[stays]
-    return mesh, steps
-
-
-def _highest_first(mesh: Mesh, half_edges: np.ndarray) -> np.ndarray:
-    """Collapses [N] in the order of the lowest triangle that each leaves, the highest first."""
-    edits, _, heights = collapsed_heights(mesh, *edge_ends(mesh, half_edges))
-    lowest = np.full(len(half_edges), np.inf)
-    np.minimum.at(lowest, edits, heights)
-    return half_edges[np.argsort(-lowest, kind="stable")]
 
 
 def collapse_covered(mesh: Mesh, steps: np.ndarray, least_height: float) -> tuple[Mesh, np.ndarray]:

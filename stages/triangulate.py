@@ -24,12 +24,12 @@ from warp_kernels.errors import OptionError
 from warp_kernels.solve import SUMS
 from warp_kernels.workspace import Workspace
 
-SPRING = 27.0
+SPRING = 39.0
 """Strength of the temporal term where the motion is certain, as a multiple of the mean squared
 error of the mesh: what pulls at vertices without cause grows with what triangles cannot show."""
-FRAME_DISPLACEMENT = 0.5
-"""Distance of the variants in later frames [px]: a wider one finds steadier places, and beyond this
-what the last iterations of the first frame have settled would move again."""
+FRAME_DISPLACEMENT = 0.75
+"""Distance of the variants in later frames [px]: a wider one finds steadier places, and a narrower
+one those that fit the picture better."""
 DEAD_BAND = 0.1
 """Steps of later frames below this are not taken [px]: noise must not move what stands still."""
 FRAME_ROUND = 3

@@ -28,7 +28,7 @@ MOST_ROWS = 30000
 
 def vote(
     points: np.ndarray, flow: FlowField, earlier: np.ndarray, later: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+) -> tuple[np.ndarray, np.ndarray]:
     """Choose a motion for each point: of those around it the one that its patch confirms.
 
     Args:
@@ -38,24 +38,20 @@ def vote(
         later: The later picture, of the same shape.
 
     Returns:
-        Motion [px], shape [N, 2]; how badly the patch fits there: mean absolute difference [code
-        values], shape [N]; and how fast the motions around close in on the point: the negative
-        of their divergence [1/frame], shape [N].
+        Motion [px], shape [N, 2], and how badly the patch fits there: mean absolute difference
+        [code values], shape [N].
     """
     scale = np.array([earlier.shape[1] / flow.width, earlier.shape[0] / flow.height])
     angles = np.arange(DIRECTIONS) * (2.0 * np.pi / DIRECTIONS)
-    directions = np.stack([np.cos(angles), np.sin(angles)], axis=1)
-    around = REACH * directions / scale
+    around = REACH * np.stack([np.cos(angles), np.sin(angles)], axis=1) / scale
     places = points + np.concatenate([np.zeros((1, 2)), around])[:, None]
     motions = flow.at(places.reshape(-1, 2)).reshape(places.shape)
-    outwards = (scale * motions[1:] * directions[:, None]).sum(axis=2)
-    closing = (-2.0 / REACH) * outwards.mean(axis=0)  # exact where motion is linear
     motions = np.insert(motions, 1, 0.0, axis=0)
     misfits = _misfits(scale * points, scale * motions, earlier, later)
     handicap = np.full((len(motions), 1), BIAS, dtype=np.float32)
     handicap[:2] = 0.0  # the motion at the point itself, then standing still
     chosen = (misfits + handicap).argmin(axis=0), np.arange(len(points))
-    return motions[chosen], misfits[chosen], closing
+    return motions[chosen], misfits[chosen]
 
 
 def _misfits(

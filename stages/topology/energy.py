@@ -42,9 +42,9 @@ class Energy:
     """Most vertices that one round moves elsewhere, as a part of the triangles."""
     profit: float = 1.5
     """A vertex moves elsewhere if its gain there exceeds its cost here this many times."""
-    calm_flip: float = 0.02
+    calm_flip: float = 0.01
     """In a followed picture a flip must save this part of its two triangles' energy."""
-    calm_flip_floor: float = 0.08
+    calm_flip_floor: float = 0.04
     """And this part of the mean energy of a triangle: what saves less only flickers."""
     calm_floor: float = 1.0
     """In a followed picture a vertex moves elsewhere only for this gain per triangle there, as a
