@@ -76,6 +76,15 @@ def test_any_time_base_survives_in_mp4(clip: Path, base: Fraction) -> None:
     assert times_of(target) == [time * base for time in pts]
 
 
+@pytest.mark.parametrize("ending", ["mp4", "mov", "mkv", "webm", "gif"])
+def test_the_same_frames_make_the_same_file(clip: Path, ending: str) -> None:
+    """To the bit: Matroska files bore random numbers once."""
+    first, second = (clip.with_name(f"{name}.{ending}") for name in ("first", "second"))
+    convert(clip, first)
+    convert(clip, second)
+    assert first.read_bytes() == second.read_bytes()
+
+
 def test_last_frame_keeps_its_length(clip: Path) -> None:
     """The file ends when the source ends."""
     target = clip.with_name("out.mp4")

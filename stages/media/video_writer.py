@@ -127,7 +127,8 @@ class VideoWriter:
         format_name = plan.container.format
         pixel_format = self._pixel_format(pixels.shape[2])
         self._clock = _COARSE.get(format_name, Fraction(1, time_base.denominator))
-        options = dict(plan.container.options)
+        # else Matroska numbers its tracks by chance: no two runs would write the same file
+        options = {**plan.container.options, "fflags": "+bitexact"}
         if format_name in ("mp4", "mov"):
             ticks = self._clock.denominator
             options["video_track_timescale"] = str(ticks)
