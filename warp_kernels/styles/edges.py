@@ -69,7 +69,8 @@ def line_ink(parameters: StyleParameters, covered: wp.vec3f) -> Ink:
     ink = Ink()
     ink.color = wp.vec3f(parameters.numbers[0], parameters.numbers[1], parameters.numbers[2])
     ink.opacity = 1.0
-    ink.coverage = wp.max(covered)
+    # the largest, as none exceeds 1; `max` would ask of each whether it is a number at all
+    ink.coverage = wp.clamp(covered[0], wp.clamp(covered[1], covered[2], 1.0), 1.0)
     return ink
 
 
