@@ -144,15 +144,21 @@ class Mesh:
         offsets, corners = fans_of(self.triangles, self.vertex_count)
         return _read_only(offsets), _read_only(corners)
 
+    @property
+    def corners(self) -> np.ndarray:
+        """Positions of each triangle's corners [px], shape [T, 3, 2]."""
+        # ten times as fast as `vertices[triangles]`
+        return self.vertices.take(self.triangles, axis=0)
+
     @cached_property
     def areas(self) -> np.ndarray:
         """Signed area of each triangle [px^2], shape [T]."""
-        return _read_only(areas_of(self.vertices[self.triangles]))
+        return _read_only(areas_of(self.corners))
 
     @cached_property
     def heights(self) -> np.ndarray:
         """Smallest height of each triangle [px], shape [T]; signed like the area."""
-        return _read_only(heights_of(self.vertices[self.triangles]))
+        return _read_only(heights_of(self.corners))
 
     @cached_property
     def on_left_right(self) -> np.ndarray:
@@ -228,6 +234,18 @@ def heights_of(corners: np.ndarray) -> np.ndarray:
     longest = np.sqrt(reduce(np.maximum, squares))
     # Where the longest edge is 0 the area is 0 as well, so any positive divisor gives 0.
     return 2.0 * areas_of(corners) / np.where(longest > 0, longest, 1.0)
+
+
+def centres_of(corners: np.ndarray) -> np.ndarray:
+    """Centroids.
+
+    Args:
+        corners: Positions [px], shape [N, 3, 2].
+
+    Returns:
+        Positions [px], shape [N, 2].
+    """
+    return np.stack([(a + b + c) / 3 for a, b, c in _columns(corners)], axis=1)
 
 
 def _columns(corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

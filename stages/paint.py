@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from stages.snapshot import Snapshot, colors_at_centres
+from stages.mesh import centres_of
+from stages.snapshot import Snapshot, colors_at
 from warp_kernels.paint import Paint
 
 
@@ -14,9 +15,9 @@ def paint_of(snapshot: Snapshot, shares: np.ndarray | None = None) -> Paint:
         shares: Which followed regions each belongs to, see `Paint`; None if there are none.
     """
     mesh, model, coefficients = snapshot.mesh, snapshot.model, snapshot.coefficients
-    corners = mesh.vertices[mesh.triangles]
-    centres = corners.mean(axis=1)
-    colors = colors_at_centres(mesh, model, coefficients)
+    corners = mesh.corners
+    centres = centres_of(corners)
+    colors = colors_at(model, coefficients, centres)
     gradients = np.zeros((len(coefficients), 2, 3))
     curvatures = None
     if model.degree > 0:
@@ -37,9 +38,9 @@ def _curvatures(snapshot: Snapshot) -> np.ndarray:
     mesh, model = snapshot.mesh, snapshot.model
     terms = [model.term(2, 0), model.term(1, 1), model.term(0, 2)]
     bends = snapshot.coefficients[:, :, terms].transpose(0, 2, 1)
-    corners = mesh.vertices[mesh.triangles]
+    corners = mesh.corners
     # over a triangle the mean of x^2 from the centroid is that over the corners divided by 4
-    away = corners - corners.mean(axis=1, keepdims=True)
+    away = corners - centres_of(corners)[:, None]
     squares = away[:, :, [0, 0, 1]] * away[:, :, [0, 1, 1]]
     bulge = np.einsum("tk,tkc->tc", squares.mean(axis=1) / 4, bends)
     return np.concatenate([-bulge[:, None], bends], axis=1)

@@ -7,7 +7,7 @@ from math import comb
 import numpy as np
 
 from stages.frame import Frame
-from stages.mesh import Mesh
+from stages.mesh import Mesh, centres_of
 from warp_kernels.color_model import CHANNELS, ColorModel
 
 
@@ -61,8 +61,7 @@ def colors_at_centres(mesh: Mesh, model: ColorModel, coefficients: np.ndarray) -
     Returns:
         Colours, not clipped [code values], [T, 3].
     """
-    centres = mesh.vertices[mesh.triangles].mean(axis=1)
-    return colors_at(model, coefficients, centres)
+    return colors_at(model, coefficients, centres_of(mesh.corners))
 
 
 def colors_at(model: ColorModel, coefficients: np.ndarray, points: np.ndarray) -> np.ndarray:
@@ -78,7 +77,8 @@ def colors_at(model: ColorModel, coefficients: np.ndarray, points: np.ndarray) -
     """
     if model.degree == 0:
         return coefficients[:, :, 0]
-    terms = np.prod(points[:, None, :] ** np.array(model.exponents), axis=2)
+    x, y = points.T
+    terms = np.stack([x**a * y**b for a, b in model.exponents], axis=1)
     return np.einsum("tck,tk->tc", coefficients, terms)
 
 

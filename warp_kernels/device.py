@@ -55,15 +55,11 @@ class Phase:
     ) -> None:
         self.parts = tuple(parts)
         self.flows_on = flows_on
+        self.shape = self._launch_sizes()
         self._size: tuple[int, int, int | None] = (0, 0, None)
         self._set_span = set_span
         self._per_element = per_element
         self._smallest_part = smallest_part
-
-    @property
-    def shape(self) -> tuple[int, ...]:
-        """Size of each part's launch, at least that of its range."""
-        return tuple(int(part.bounds.size) for part in self.parts)
 
     def resize(
         self, count: int, *, per_element: int | None = None, threads: int | None = None
@@ -88,6 +84,11 @@ class Phase:
             self._set_span(number, begin, end)
             needed = end - begin if threads is None or begin == end else threads
             part.set_dim(_launch_size(needed))
+        self.shape = self._launch_sizes()
+
+    def _launch_sizes(self) -> tuple[int, ...]:
+        """Size of each part's launch, at least that of its range."""
+        return tuple(int(part.bounds.size) for part in self.parts)
 
 
 class Device:

@@ -87,28 +87,27 @@ def shapes_of(corners: np.ndarray) -> Shapes:
     Args:
         corners: Positions [px], [N, 3, 2].
     """
-    places = to_places(corners)
-    sides = (places[:, 1:] - places[:, :1]) / float(1 << FRACTION_BITS)
-    first, second = sides[:, 0], sides[:, 1]
+    # long rows: numpy is slow where the last axis is a point
+    places = to_places(np.ascontiguousarray(corners.reshape(-1, 6).T)).reshape(3, 2, -1)
+    sides = (places[1:] - places[0]) / float(1 << FRACTION_BITS)
+    first, second = sides
     # the side across from a corner is its weight: sum(weight * corner) / sum(weight)
-    across = _lengths(*np.stack([second - first, second, first]).transpose(2, 0, 1))
-    perimeter = np.maximum(across.sum(axis=0), 1e-12)
-    centres = (across[1, :, None] * first + across[2, :, None] * second) / perimeter[:, None]
-    twice_area = np.abs(first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0])
-    radii = twice_area / perimeter
-    incircles = np.concatenate([centres, radii[:, None]], axis=1)
-    return Shapes(places[:, 0], sides, incircles, _lines(first, second))
+    across = [_lengths(*side) for side in (second - first, second, first)]
+    perimeter = np.maximum(sum(across), 1e-12)
+    centres = (across[1] * first + across[2] * second) / perimeter
+    radii = np.abs(first[0] * second[1] - first[1] * second[0]) / perimeter
+    incircles = np.stack([*centres, radii], axis=1)
+    return Shapes(places[0].T, sides.transpose(2, 0, 1), incircles, _lines(first, second))
 
 
 def _lines(first: np.ndarray, second: np.ndarray) -> np.ndarray:
     """Sides of triangles of either orientation, [N, 3, 3].
 
     Args:
-        first: Corners 1 from corner 0 [px], [N, 2].
-        second: Corners 2 from there [px], [N, 2].
+        first: Corners 1 from corner 0 [px], [2, N].
+        second: Corners 2 from there [px], [2, N].
     """
-    # long rows: numpy is slow where the last axis is a point
-    x, y = np.stack([np.zeros_like(first), first, second]).transpose(2, 0, 1)
+    x, y = np.stack([np.zeros_like(first), first, second], axis=1)
     a, b = y - y[[1, 2, 0]], x[[1, 2, 0]] - x
     length = np.maximum(_lengths(a, b), 1e-12)
     a, b = a / length, b / length

@@ -70,26 +70,44 @@ _SAMPLES_IN = """
 """
 """Which samples of the pixel `at` lie in `triangle`; reads one sample more than there are."""
 
-_WHOLE_PIXELS = """
-    const int triangle = *at, count = SIDE * (begin - k);
+_BORDERS = """
+    const int* const at = first + SIDE * k;
     const int* const lower = at + (SIDE - 1) * width;
-    int sample = 0;
+    unsigned long long beside = 0, below = 0;
 #if !defined(__CUDA_ARCH__)
     typedef int Ints __attribute__((ext_vector_type(16), aligned(4)));
     typedef bool Bools __attribute__((ext_vector_type(16)));
-    for (; sample + 16 <= count; sample += 16) {
-        const Ints differing = (*(const Ints*)(at + sample) ^ triangle)
-            | (*(const Ints*)(lower + sample) ^ triangle);
-        const int bits = __builtin_bit_cast(
-            unsigned short, __builtin_convertvector(differing, Bools));
-        if (bits) return (sample + __builtin_ctz(bits)) / SIDE;
+    auto bits = [](Ints differing) -> unsigned long long {
+        return __builtin_bit_cast(unsigned short, __builtin_convertvector(differing, Bools));
+    };
+    if (k + 16 <= begin) {
+        for (int sample = 0; sample < 16 * SIDE; sample += 16) {
+            const Ints here = *(const Ints*)(at + sample);
+            beside |= bits(here ^ *(const Ints*)(at + sample + 1)) << sample;
+            below |= bits(here ^ *(const Ints*)(lower + sample)) << sample;
+        }
+        return below | (beside & WITHIN);
     }
 #endif
-    while (sample < count && at[sample] == triangle && lower[sample] == triangle) ++sample;
-    return sample / SIDE;
+    for (int sample = 0; sample < 16 * SIDE && sample < SIDE * (begin - k); ++sample) {
+        beside |= (unsigned long long)(at[sample] != at[sample + 1]) << sample;
+        below |= (unsigned long long)(at[sample] != lower[sample]) << sample;
+    }
+    return below | (beside & WITHIN);
 """
-"""How many pixels from `at` on lie in one triangle: one that holds the outermost samples of a pixel
-holds those between, as it is convex."""
+"""Where triangles differ within the sixteen pixels from `k` on: for every sample of their upper row
+a bit whether it differs from the next one of its pixel or from the lowest one below. A pixel
+without such a bit lies in one triangle: one that holds the outermost samples holds those between,
+as it is convex."""
+
+_LOWEST = """
+#if defined(__CUDA_ARCH__)
+    return __ffsll(bits) - 1;
+#else
+    return __builtin_ctzll(bits);
+#endif
+"""
+"""Number of the lowest bit that is set."""
 
 _LIST_POINTS = """
     const int begin = most < STRETCH ? most : STRETCH, every = (1 << SIDE * SIDE) - 1;
@@ -100,7 +118,8 @@ _LIST_POINTS = """
     int* __restrict const down = (int*)list_out + DOWN;
     int* __restrict const count = (int*)list_out + COUNT;
     auto samples_in = [&](const int* at, int triangle) { SAMPLES_IN return found; };
-    auto whole_pixels = [&](const int* at, int k) { WHOLE_PIXELS };
+    auto borders = [&](int k) { BORDERS };
+    auto lowest = [](unsigned long long bits) { LOWEST };
     for (int k = 0; k < begin; ++k) {
         pixel[k] = k;
         triangle_of[k] = first[SIDE * k];
@@ -114,28 +133,33 @@ _LIST_POINTS = """
         count[point] = part[2];
         return samples;
     };
-    int end = begin, k = 0;
-    while (k < begin && end + SIDE * SIDE <= ROOM) {
-        const int* const at = first + SIDE * k;
-        const int whole = whole_pixels(at, k);
-        k += whole;
-        if (whole) continue;
-        int left = every ^ stand_for(k, samples_in(at, triangle_of[k]));
-        for (int sample = 0; left; ++sample) {
-            if (!(left >> sample & 1)) continue;
-            const int other = at[sample / SIDE * width + sample % SIDE];
-            pixel[end] = k;
-            triangle_of[end] = other;
-            left ^= stand_for(end++, left & samples_in(at, other));
+    int end = begin, done = begin;
+    for (int sixteen = 0; sixteen < done; sixteen += 16) {
+        unsigned long long differing = borders(sixteen);
+        while (differing) {
+            const int number = lowest(differing) / SIDE, k = sixteen + number;
+            if (end + SIDE * SIDE > ROOM) {
+                done = k;
+                break;
+            }
+            const int* const at = first + SIDE * k;
+            int left = every ^ stand_for(k, samples_in(at, triangle_of[k]));
+            while (left) {
+                const int sample = lowest(left);
+                const int other = at[sample / SIDE * width + sample % SIDE];
+                pixel[end] = k;
+                triangle_of[end] = other;
+                left ^= stand_for(end++, left & samples_in(at, other));
+            }
+            differing &= ~1ull << (SIDE * number + SIDE - 1);
         }
-        ++k;
     }
     for (int spare = end; spare % LANES; ++spare) {
         pixel[spare] = 0;
         triangle_of[spare] = *first;
         stand_for(spare, every);
     }
-    return wp::vec_t<3, int>(k, begin, end);
+    return wp::vec_t<3, int>(done, begin, end);
 """
 
 
@@ -147,7 +171,8 @@ def point_lister(samples: int) -> Any:
         samples: Samples of a pixel, across and down each, at most 4.
     """
     snippet = _LIST_POINTS.replace("SAMPLES_IN", _SAMPLES_IN)
-    snippet = snippet.replace("WHOLE_PIXELS", _WHOLE_PIXELS)
+    snippet = snippet.replace("BORDERS", _BORDERS).replace("LOWEST", _LOWEST)
+    within = sum(1 << bit for bit in range(16 * samples) if bit % samples != samples - 1)
     constants = {
         "SIDE": samples,
         "STRETCH": STRETCH,
@@ -160,6 +185,7 @@ def point_lister(samples: int) -> Any:
         "COUNT": COUNT,
     }
     declared = "".join(f"constexpr int {name} = {value};\n" for name, value in constants.items())
+    declared += f"constexpr unsigned long long WITHIN = {within}ull;\n"
 
     @wp.func_native(declared + snippet)
     def list_points(
@@ -170,7 +196,7 @@ def point_lister(samples: int) -> Any:
         parts: wp.uint64,
         list_out: wp.uint64,
     ) -> wp.vec3i:
-        """List them; on the way pixels within one triangle are skipped in runs.
+        """List them; of pixels within one triangle it is enough to know that they are.
 
         Args:
             line: Address of the triangles of the samples of a row of pixels, `samples` rows.

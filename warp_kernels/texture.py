@@ -1,6 +1,7 @@
 """Textures of one channel with levels of detail, and how shaders look into them."""
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 import warp as wp
@@ -37,6 +38,27 @@ class Texture:
             levels.append(level)
         return cls(tuple(np.rint(255 * np.clip(level, 0, 1)).astype(np.uint8) for level in levels))
 
+    def with_neighbours(self, *, repeats: bool) -> "Texture":
+        """Each texel followed by those to its right, below it, and both, as `texture_at` reads it.
+
+        Args:
+            repeats: Whether images are tiles, else their borders go on for ever.
+
+        Returns:
+            Levels [images, rows, 4 columns].
+        """
+        return Texture(
+            tuple(_in_fours(level, "wrap" if repeats else "edge") for level in self.levels)
+        )
+
+
+def _in_fours(level: np.ndarray, beyond: Literal["wrap", "edge"]) -> np.ndarray:
+    """Each texel of one level [images, rows, columns] with its neighbours."""
+    more = np.pad(level, ((0, 0), (0, 1), (0, 1)), mode=beyond)
+    rows = (more[:, :-1], more[:, 1:])
+    fours = [part for row in rows for part in (row[:, :, :-1], row[:, :, 1:])]
+    return np.stack(fours, axis=3).reshape(*level.shape[:2], -1)
+
 
 def pack(textures: list[Texture | None]) -> tuple[np.ndarray, np.ndarray, list[tuple[int, int]]]:
     """Put textures behind each other.
@@ -62,42 +84,45 @@ def pack(textures: list[Texture | None]) -> tuple[np.ndarray, np.ndarray, list[t
 
 
 @wp.func
-def _wrapped(index: int, count: int, repeats: bool) -> int:
-    """The index itself, or that of the texel that stands for it beyond the border."""
-    if repeats:
-        # the processor divides whole numbers one by one, others sixteen at a time
-        rest = index - count * int(wp.floor(float(index) / float(count)))
-        rest = wp.where(rest < 0, rest + count, rest)
-        return wp.where(rest >= count, rest - count, rest)
-    return wp.clamp(index, 0, count - 1)
+def _wrapped(index: int, count: int) -> int:
+    """The texel of a tile that stands for one of its repetitions."""
+    # the processor divides whole numbers one by one, others sixteen at a time
+    rest = index - count * int(wp.floor(float(index) / float(count)))
+    rest = wp.where(rest < 0, rest + count, rest)
+    return wp.where(rest >= count, rest - count, rest)
 
 
 @wp.func
-def level_at(
-    texels: wp.array(dtype=wp.uint8), table: wp.vec4i, image: int, at: wp.vec2f, repeats: bool
-) -> float:
+def level_at(scene: Scene, table: wp.vec4i, image: int, at: wp.vec2f, repeats: bool) -> float:
     """Brightness of one level, bilinear; see `texture_at`.
 
     Args:
-        texels: Those of all textures.
+        scene: Holds the texels.
         table: The level's row of `Scene.levels`.
         image: Number of the image.
         at: Position, right and down; an image is the unit square.
         repeats: Whether the image is a tile.
     """
-    x = at[0] * float(table[3]) - 0.5
-    y = at[1] * float(table[2]) - 0.5
+    rows = table[2]
+    columns = columns_of(table)
+    x = at[0] * float(columns) - 0.5
+    y = at[1] * float(rows) - 0.5
+    if not repeats:
+        x = wp.clamp(x, 0.0, float(columns - 1))
+        y = wp.clamp(y, 0.0, float(rows - 1))
     column = int(wp.floor(x))
     row = int(wp.floor(y))
     right = x - float(column)
     down = y - float(row)
-    first = table[0] + image * table[2] * table[3]
-    upper = first + _wrapped(row, table[2], repeats) * table[3]
-    lower = first + _wrapped(row + 1, table[2], repeats) * table[3]
-    left_column = _wrapped(column, table[3], repeats)
-    right_column = _wrapped(column + 1, table[3], repeats)
-    above = wp.lerp(float(texels[upper + left_column]), float(texels[upper + right_column]), right)
-    below = wp.lerp(float(texels[lower + left_column]), float(texels[lower + right_column]), right)
+    if repeats:
+        column = _wrapped(column, columns)
+        row = _wrapped(row, rows)
+    texel = (image * rows + row) * columns + column
+    # one number of 32 bits for each point: bytes the processor fetches one by one
+    fours = wp.array(ptr=scene.texels.ptr, shape=(scene.texels.shape[0] / 4,), dtype=int)
+    four = fours[(table[0] >> 2) + texel]
+    above = wp.lerp(float(four & 255), float((four >> 8) & 255), right)
+    below = wp.lerp(float((four >> 16) & 255), float((four >> 24) & 255), right)
     return wp.lerp(above, below, down) * wp.static(1.0 / 255.0)
 
 
@@ -111,7 +136,7 @@ def detail_for(scene: Scene, parameters: StyleParameters, footprint: float) -> f
         footprint: Size of an output pixel, as a part of the image's longer side.
     """
     table = level_of(scene, parameters.first_level)
-    texels = footprint * float(wp.max(table[2], table[3]))
+    texels = footprint * float(wp.max(table[2], columns_of(table)))
     last = float(parameters.level_count - 1)
     return wp.clamp(wp.log2(wp.max(texels, 1.0e-6)), 0.0, last)
 
@@ -119,12 +144,19 @@ def detail_for(scene: Scene, parameters: StyleParameters, footprint: float) -> f
 @wp.func
 def level_of(scene: Scene, level: int) -> wp.vec4i:
     """A row of `Scene.levels`."""
-    return wp.vec4i(
-        scene.levels[level, 0],
-        scene.levels[level, 1],
-        scene.levels[level, 2],
-        scene.levels[level, 3],
-    )
+    table = wp.array(ptr=scene.levels.ptr, shape=(4 * scene.levels.shape[0],), dtype=int)
+    first = 4 * level
+    return wp.vec4i(table[first], table[first + 1], table[first + 2], table[first + 3])
+
+
+@wp.func
+def columns_of(table: wp.vec4i) -> int:
+    """Columns of a level `with_neighbours`, each of which is four numbers.
+
+    Args:
+        table: The level's row of `Scene.levels`.
+    """
+    return table[3] >> 2
 
 
 @wp.func
@@ -136,7 +168,7 @@ def texture_at(
     detail: float,
     repeats: bool,
 ) -> float:
-    """Brightness of a style's texture, 0 to 1, trilinear.
+    """Brightness of a style's texture, 0 to 1, trilinear; it must know its texels' neighbours.
 
     Args:
         scene: Holds the texels.
@@ -144,7 +176,8 @@ def texture_at(
         image: Number of the image, such as a tone.
         at: Position, right and down; an image is the unit square.
         detail: See `detail_for`.
-        repeats: Whether the image is a tile, else its border goes on for ever.
+        repeats: Whether the image is a tile, else its border goes on for ever; the same as for
+            its neighbours.
     """
     last = wp.max(parameters.level_count - 1, 0)
     level = wp.min(int(detail), wp.max(last - 1, 0))
@@ -152,5 +185,5 @@ def texture_at(
     # both without a branch, also where one has no weight: many points are looked at together
     finer = level_of(scene, parameters.first_level + level)
     coarser = level_of(scene, parameters.first_level + wp.min(level + 1, last))
-    value = (1.0 - part) * level_at(scene.texels, finer, image, at, repeats)
-    return value + part * level_at(scene.texels, coarser, image, at, repeats)
+    value = (1.0 - part) * level_at(scene, finer, image, at, repeats)
+    return value + part * level_at(scene, coarser, image, at, repeats)

@@ -103,4 +103,4 @@ class Paper(Style):
 
     def texture(self, read: ReadPicture) -> Texels | None:
         """The grain."""
-        return Texels.of(grain()[None])
+        return Texels.of(grain()[None]).with_neighbours(repeats=True)

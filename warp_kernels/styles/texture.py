@@ -35,7 +35,7 @@ LOOKS = wp.constant(5)
 """How often the picture is looked at for one pixel."""
 STEP = wp.constant(6)
 """From one look to the next in the picture, to the right and down there."""
-MOST_LOOKS = wp.constant(4.0)
+MOST_LOOKS = wp.constant(4)
 """Enough for triangles that are eight times as long as wide; longer ones blur a little."""
 
 
@@ -78,7 +78,7 @@ def prepare_texture(scene: Scene, parameters: StyleParameters, triangle: int) ->
     spread = wp.sqrt(0.25 * (along - down) * (along - down) + both * both)
     steep = wp.sqrt(0.5 * (along + down) + spread)
     flat = wp.sqrt(wp.max(0.5 * (along + down) - spread, 0.0))
-    looks = wp.clamp(wp.ceil(0.5 * steep / wp.max(flat, 1.0e-9)), 1.0, MOST_LOOKS)
+    looks = wp.clamp(wp.ceil(0.5 * steep / wp.max(flat, 1.0e-9)), 1.0, float(MOST_LOOKS))
     turn = 0.5 * wp.atan2(2.0 * both, along - down)
     step = (scene.pixel / looks) * wp.vec2f(wp.cos(turn), wp.sin(turn))
     result[DETAIL] = detail_for(scene, parameters, steep * scene.pixel / looks)
@@ -99,8 +99,10 @@ def textured_color(
     step = wp.vec2f(n[STEP], n[STEP + 1])
     at = wp.vec2f(1.0 - left, 1.0 - up) - 0.5 * (n[LOOKS] - 1.0) * step
     value = float(0.0)
-    for _look in range(int(n[LOOKS])):
-        value += texture_at(scene, parameters, 0, at, n[DETAIL], False)
+    # always as often, some in vain: many points are looked at together
+    for look in range(MOST_LOOKS):
+        seen = texture_at(scene, parameters, 0, at, n[DETAIL], False)
+        value += wp.where(float(look) < n[LOOKS], seen, 0.0)
         at += step
     brightness = 0.5 + parameters.numbers[0] * (value / n[LOOKS] - 0.5)
     return full_ink(relit(ground_below(scene, sample, below), wp.clamp(brightness, 0.0, 1.0)))
@@ -133,9 +135,9 @@ class Texture(Style):
     def texture(self, read: ReadPicture) -> Texels | None:
         """The picture that was asked for."""
         if self.file in PICTURES:
-            return Texels.of(PICTURES[self.file]()[None])
+            return Texels.of(PICTURES[self.file]()[None]).with_neighbours(repeats=False)
         try:
-            return Texels.of(read(self.file)[None])
+            return Texels.of(read(self.file)[None]).with_neighbours(repeats=False)
         except TrimotionError as error:
             known = ", ".join(PICTURES)
             raise OptionError(f"texture:{self.file}: {error}; or choose from {known}") from error
