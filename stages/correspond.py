@@ -23,8 +23,8 @@ def kept_vertices(before: Mesh, after: Mesh) -> np.ndarray:
 def kept_triangles(before: Mesh, after: Mesh) -> np.ndarray:
     """Where the triangles of a mesh stand in another: those between the same three vertices.
 
-    Ids of triangles do not tell: a collapse changes a corner and keeps the id, two flips bring a
-    triangle back under another id, and a row may be turned to start with another corner.
+    Ids of triangles do not tell: an edit changes corners and keeps ids, some flips bring a triangle
+    back under another id, and a row may be turned to start with another corner.
 
     Args:
         before: One mesh.

@@ -21,8 +21,9 @@ class Mesh:
     """Triangles that cover the domain [0, width] x [0, height] once, x right and y down.
 
     Row order is meaning: corner 0 of a triangle starts its base edge. Ids persist from frame
-    to frame; what an edit creates gets the next fresh numbers. Arrays are read-only: those
-    handed in writable are copied. `stages.validate.assert_valid` states what a mesh must obey.
+    to frame; what an edit changes goes on under its own, what it adds gets the next fresh ones.
+    Arrays are read-only: those handed in writable are copied. `stages.validate.assert_valid` states
+    what a mesh must obey.
 
     Half-edge e = 3 t + c is corner c of triangle t, the edge from that corner to the next one,
     and the place of the neighbour across that edge, all at once.

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import warp as wp
 
-from stages.optimize import load_mesh
+from stages.optimize import load_mesh, place_mesh
 from tests.kernel_samples import noise, poisoned_workspace, random_mesh, waves
 from warp_kernels.color_model import COLOR_MODELS, CONSTANT, LINEAR, ColorModel
 from warp_kernels.device import Device, Phase, Team
@@ -93,6 +93,25 @@ def test_same_bits_while_meshes_change_size(device: str) -> None:
     for other in ends[1:]:
         for actual, expected in zip(other, ends[0], strict=True):
             np.testing.assert_array_equal(actual, expected)
+
+
+def test_a_mesh_is_loaded_again_where_it_must(device: str) -> None:
+    """After steps the vertices lie elsewhere, after another picture all sums are void."""
+    mesh, other = random_mesh(WIDTH, HEIGHT, 60), random_mesh(WIDTH, HEIGHT, 50, seed=1)
+    used, fresh = (Workspace(Device(device), (WIDTH, HEIGHT), LINEAR) for _ in range(2))
+    used.load_image(waves(WIDTH, HEIGHT))
+    load_mesh(used, mesh)
+    used.iterate(7, **STEPS)
+    load_mesh(used, mesh)
+    np.testing.assert_array_equal(used.vertices(), mesh.vertices)
+    used.energies()
+    for workspace in (used, fresh):
+        workspace.load_image(noise(WIDTH, HEIGHT))
+        load_mesh(workspace, mesh)
+    np.testing.assert_array_equal(used.energies(), fresh.energies())
+    place_mesh(used, other)
+    with pytest.raises(ValueError, match="hold"):
+        used.iterate(1, **STEPS)
 
 
 @pytest.mark.parametrize("threads", [1, 2, 3])

@@ -14,6 +14,8 @@ from warp_kernels.raster import SUBPIXELS, column_of, to_fixed, walk_edge
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 
 _UNIT = wp.constant(SUBPIXELS)
+LEAST_ROWS = 1
+"""Rows of pixels that are worth a thread: bands are so low that with more some would have none."""
 
 
 @wp.func_native("""
@@ -127,4 +129,6 @@ def record_gbuffer(
             across it is the output's width times the samples per output pixel.
     """
     inputs = [vertices, triangles, count, wp.vec2d(*scale), first_row, samples]
-    return device.record(fill_triangles, inputs, [triangle_out], flows_on=True)
+    return device.record(
+        fill_triangles, inputs, [triangle_out], smallest_part=LEAST_ROWS, flows_on=True
+    )

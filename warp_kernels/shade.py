@@ -17,6 +17,7 @@ import warp as wp
 
 from warp_kernels.blend import Coat, stack_of
 from warp_kernels.device import Device, Phase
+from warp_kernels.gbuffer import LEAST_ROWS
 from warp_kernels.layers import LayerTables
 from warp_kernels.points import (
     COUNT,
@@ -246,4 +247,11 @@ def record_shade(
     """
     inputs = [scene, parameters, layers, triangle_of, top]
     kernel = _shade_kernel(coats, samples, fades)
-    return device.record(kernel, inputs, [points_out, canvas_out], flows_on=flows_on)
+    # as the rows of the labels are spread: each thread shades those that it has filled
+    return device.record(
+        kernel,
+        inputs,
+        [points_out, canvas_out],
+        smallest_part=LEAST_ROWS,
+        flows_on=flows_on,
+    )

@@ -78,7 +78,8 @@ class Workspace:
         """How often the arrays have moved: what was recorded over them before is void."""
         self._front = 0
         self.placed: object = None
-        """The mesh that lies here, as its owner knows it."""
+        """The mesh that lies here, as its owner knows it, over the picture at hand."""
+        self._held = False
         self._allocate(vertices=512, triangles=1024)
 
     def load_image(self, pixels: np.ndarray, weights: np.ndarray | None = None) -> None:
@@ -97,6 +98,7 @@ class Workspace:
 
         Deviation: the paper has no weights.
         """
+        self.placed = None  # what was summed along edges belongs to the picture before
         self.device.write(self._pixels, pixels)
         if self.weighted:
             self._load_weights(weights)
@@ -135,7 +137,7 @@ class Workspace:
             fan_corners: Corners 3 t + c by vertex, [3 T].
             freedom: 1 where a coordinate may change, else 0, [V, 2].
         """
-        self.placed = None
+        self.placed, self._held = None, False
         self._counts = (len(vertices), len(triangles), len(edges))
         self._grow()
         self._front = 0
@@ -158,6 +160,7 @@ class Workspace:
         Args:
             anchors: Position [px] and weight [code value^2] of every vertex, [V, 3].
         """
+        self._held = True
         self.device.write(self._anchors, anchors)
         self.device.write(self._memory, np.tile((FAR, FAR, 0.0, 0.0), (self._counts[0], 1)))
 
@@ -180,6 +183,9 @@ class Workspace:
             displacement: Delta of Eq. 11, a multiple of 1/256 [px]; a small one finds the very
                 place of an edge, a large one sees farther.
         """
+        if not self._held:
+            raise ValueError("a mesh was placed and not held; see `hold`")
+        self.placed = None
         self._displace(displacement)
         self.device.write(self._controls, np.array([trust, regularity, dead_band]))
         there, back = (
@@ -192,11 +198,6 @@ class Workspace:
         if times % 2:
             self.device.run(there)
             self._front = 1
-
-    @property
-    def capacity(self) -> tuple[int, int]:
-        """Vertices and triangles that the arrays hold."""
-        return self._capacity
 
     @property
     def standing(self) -> wp.array:
@@ -251,13 +252,14 @@ class Workspace:
             self.device.write(self._moved, np.ones(self._counts[0], dtype=np.int32))
 
     def _grow(self) -> None:
-        had, needed = np.array(self._capacity), np.array(self._counts[:2])
+        had, needed = np.array(self.capacity), np.array(self._counts[:2])
         if (needed > had).any():
             vertices, triangles = np.maximum(had, needed * 3 // 2).tolist()
             self._allocate(vertices=vertices, triangles=triangles)
 
     def _allocate(self, *, vertices: int, triangles: int) -> None:
-        self._capacity = (vertices, triangles)
+        self.capacity = (vertices, triangles)
+        """Vertices and triangles that the arrays hold."""
         self.generation += 1
         edges = vertices + triangles + 1  # Euler: E = V + T - 1 in a disc
         types = moment_types(self.layout)
