@@ -1,13 +1,13 @@
 """A picture as motion is looked for in it."""
 
-from functools import cached_property
-
 import cv2
 import numpy as np
 
 
 class View:
     """A picture in grey and small; what was made once is kept, for two passages meet in a frame.
+
+    Two threads may ask at once: both would make the same.
 
     Args:
         pixels: Code values, shape [H, W, 3] uint8.
@@ -32,9 +32,6 @@ class View:
         if lines not in self._reduced:
             scale = min(1.0, lines / min(self.height, self.width))
             size = (max(1, round(scale * self.width)), max(1, round(scale * self.height)))
-            self._reduced[lines] = cv2.resize(self._gray, size, interpolation=cv2.INTER_AREA)
+            gray = cv2.cvtColor(self.pixels, cv2.COLOR_RGB2GRAY)  # too large to be kept
+            self._reduced[lines] = cv2.resize(gray, size, interpolation=cv2.INTER_AREA)
         return self._reduced[lines]
-
-    @cached_property
-    def _gray(self) -> np.ndarray:
-        return cv2.cvtColor(self.pixels, cv2.COLOR_RGB2GRAY)
