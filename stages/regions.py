@@ -7,7 +7,7 @@ import numpy as np
 
 from stages.frame import Frame
 from stages.gray import gray_of
-from stages.media import Decoder, FrameRange, open_decoder, probe
+from stages.media import Decoder, FrameRange, input_pattern, open_decoder, probe
 from warp_kernels.errors import MediaError, OptionError
 from warp_kernels.styles import Style
 
@@ -81,7 +81,10 @@ class Mask:
         return gray
 
     def _found(self, first: int) -> Frame | None:
-        """The first picture with this number or a higher one, or None behind the last."""
+        """The first picture with this number or a higher one, or None if it is not there."""
+        pattern = input_pattern(self._path)
+        if self._is_single and pattern is not None and first not in pattern.numbers():
+            return None
         try:
             if self._decoder is None:
                 wanted = FrameRange(first, first if self._is_single else None)

@@ -283,7 +283,7 @@ def test_nothing_is_drawn_from_stale_memory(clip: Path, tmp_path: Path) -> None:
         with pytest.raises(ValueError, match="shares"):
             renderer.render(snapshot, shares=shares)
     mask = Region(str(clip.with_name("mask.png")), Flat(), (2,))
-    with pytest.raises(OptionError, match="--region .*@2: "):
+    with pytest.raises(OptionError, match=r"mask\.png@2"):
         animate(Job(clip, tmp_path / "out.mp4", regions=(mask,)), Progress())
     assert not list(tmp_path.iterdir())
 
@@ -299,7 +299,7 @@ def test_nothing_is_drawn_from_stale_memory(clip: Path, tmp_path: Path) -> None:
         ("animate", ("{mask}@2:flat", "--independent"), "--independent"),
         ("animate", ("{mask}@0:flat", "--start", "0.05", "--end", "0.15"), "mask.png@0: frame 0"),
         ("animate", ("{mask}@4:flat", "--start", "0.05", "--end", "0.15"), "mask.png@4: frame 4"),
-        ("animate", ("{gap}@1,2:flat",), "gap_#.png@2: "),
+        ("animate", ("{gap}@1,2:flat",), "gap_#.png@2: has no mask for frame 2"),
         ("animate", ("{short}@1,2:flat",), "short.mp4@2: has no mask for frame 2"),
         ("animate", ("{small}@2:flat",), "small.png@2: the mask is 48x64"),
         ("animate", ("no_such.png@2:flat",), "--region no_such.png@2: "),
