@@ -31,6 +31,7 @@ from stages.snapshot import Snapshot
 from stages.triangulate import Triangulator
 from stages.weights import EvenWeights, WeightMap, open_weights
 from warp_kernels.device import Device
+from warp_kernels.errors import OptionError
 
 DECODED_AHEAD = 3
 """Decoded frames that may wait."""
@@ -69,7 +70,7 @@ class Solved:
 
 
 def animate(job: Job, progress: Progress) -> Animated:
-    """Convert a source; one whose regions are to be followed needs `animate_in_parts`.
+    """Convert a source at once; a job that follows regions needs `animate_in_parts`.
 
     Nothing is written under the output's name unless the whole job succeeds; a track that the
     job writes beside it keeps every frame that was solved.
@@ -80,10 +81,15 @@ def animate(job: Job, progress: Progress) -> Animated:
 
     Raises:
         MediaError: If the source or the map of weights cannot be read.
-        OptionError: If an option does not fit the source.
+        OptionError: If an option does not fit the source, or regions are to be followed.
         OutputError: If the output cannot be written.
         TrackError: If the track to go on with cannot be.
     """
+    for region in job.followed:
+        raise OptionError(
+            f"--region {region.mask}@{region.frames[0]}: a frame is drawn here before later ones "
+            "are solved, and this region may come from these; use animate_in_parts"
+        )
     return _convert(job, progress, draws=True)
 
 

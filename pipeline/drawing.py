@@ -4,6 +4,7 @@ from contextlib import ExitStack
 from types import TracebackType
 
 from pipeline.job import Job
+from pipeline.own_frames import own_mask
 from pipeline.smooth import Smoother
 from pipeline.take import Take
 from stages.fading import Fading
@@ -30,10 +31,9 @@ class Drawing:
         picture = (info.width, info.height)
         size = job.size_for(picture)
         masked = tuple(region.style for region in job.regions)
-        followed = tuple(i for i, region in enumerate(job.regions) if region in job.followed)
+        followed = tuple(i for i, region in enumerate(job.regions) if region.frames)
         self._renderer = Renderer(device, picture, size, job.shown_styles, masked, followed)
-        still = [region for region in job.regions if region not in job.followed]
-        self._masks = open_masks(still, picture)
+        self._masks = open_masks(job.unfollowed, picture)
         self._encoder = open_encoder(job.output, info, size, job.encode, job.frame_range)
         # Where every frame starts anew, triangles of the same number have nothing in common.
         self._blend = 0 if job.independent else job.blend
@@ -101,7 +101,11 @@ def check_drawing(job: Job, info: MediaInfo) -> None:
         MediaError: If a mask cannot be read.
         OutputError: If the output cannot be written.
     """
-    for mask in open_masks(job.regions, (info.width, info.height)):
+    picture = (info.width, info.height)
+    for mask in open_masks(job.unfollowed, picture):
         mask.close()
-    size = job.size_for((info.width, info.height))
+    for region in job.followed:
+        for frame in region.frames:
+            own_mask(region, frame, picture)
+    size = job.size_for(picture)
     check_output(job.output, info, size, job.encode, job.frame_range)

@@ -5,10 +5,10 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from pipeline.job import Job
+from pipeline.own_frames import check_dependent, own_mask
 from pipeline.track import FrameRow, TrackReader
 from stages.following import inherited, under_mask
-from stages.media import MediaInfo
-from stages.regions import Mask, Region
+from stages.regions import Region
 from warp_kernels.errors import OptionError
 
 MEMBER = 255
@@ -48,44 +48,11 @@ def followed_shares(
         yield MEMBER * shares.astype(np.uint8)
 
 
-def check_followed(job: Job, info: MediaInfo) -> None:
-    """Find out before frames are solved whether their regions can be followed.
-
-    Args:
-        job: The job.
-        info: Its source.
-
-    Raises:
-        OptionError: If a mask was drawn for a frame that will not be there.
-    """
-    goes_on = job.resume and job.track is not None and job.track.exists()
-    wanted = job.frame_range
-    for region in job.followed:
-        _check_dependent(region, job)
-        for frame in region.frames:
-            is_there = wanted.first <= frame <= (frame if wanted.last is None else wanted.last)
-            is_there &= wanted.is_in_step(frame)
-            is_there &= info.frame_count is None or frame < info.frame_count
-            if not (is_there or goes_on):
-                raise OptionError(
-                    f"--region {region.mask}@{frame}: the frames {wanted} have no frame {frame}; "
-                    "draw the mask for one of them, or solve more and render a part of the track"
-                )
-
-
-def _check_dependent(region: Region, job: Job) -> None:
-    if job.independent:
-        raise OptionError(
-            f"--region {region.mask}@{region.frames[0]}: with --independent no triangle outlives "
-            "its frame; give masks for all frames, without @"
-        )
-
-
 def _members(
     region: Region, job: Job, track: TrackReader, rows: Sequence[FrameRow]
 ) -> dict[int, np.ndarray]:
     """The triangles of a region, by frame: what is carried there from the nearest of its own."""
-    _check_dependent(region, job)
+    check_dependent(region, job)
     frames = [row.frame for row in track.rows]
     members: dict[int, np.ndarray] = {}
     for own, asked in _turns(region, track, rows).items():
@@ -103,7 +70,7 @@ def _turns(region: Region, track: TrackReader, rows: Sequence[FrameRow]) -> dict
     for frame in region.frames:
         if frame not in shots:
             raise OptionError(
-                f"--region {region.mask}@{frame}: {track.path} has no frame {frame}, it has frames "
+                f"--region {region.mask}@{frame}: no frame {frame} was solved, only frames "
                 f"{track.rows[0].frame} to {track.rows[-1].frame}; draw the mask for one of them"
             )
     turns: dict[int, list[int]] = {}
@@ -118,11 +85,7 @@ def _turns(region: Region, track: TrackReader, rows: Sequence[FrameRow]) -> dict
 def _under(region: Region, track: TrackReader, frame: int) -> np.ndarray:
     """The triangles under the mask of a region, in one of its frames."""
     mesh = track.snapshot(frame).mesh
-    mask = Mask(region.mask, (mesh.width, mesh.height), is_single=True)
-    try:
-        return under_mask(mesh, mask.at(frame))
-    finally:
-        mask.close()
+    return under_mask(mesh, own_mask(region, frame, (mesh.width, mesh.height)))
 
 
 def _carried(track: TrackReader, frames: list[int], members: np.ndarray) -> dict[int, np.ndarray]:

@@ -235,6 +235,11 @@ class Job:
         return tuple(region for region in self.regions if region.frames)
 
     @property
+    def unfollowed(self) -> tuple[Region, ...]:
+        """Regions whose masks say for every frame where they are."""
+        return tuple(region for region in self.regions if not region.frames)
+
+    @property
     def _all_styles(self) -> tuple[Style, ...]:
         """Looks of the whole picture and of regions."""
         return (*self.shown_styles, *(region.style for region in self.regions))

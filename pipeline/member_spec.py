@@ -12,6 +12,7 @@ import numpy as np
 
 from pipeline.declared import own_first
 from stages.gray import read_gray
+from stages.media import input_pattern
 from stages.regions import Region
 from warp_kernels.errors import OptionError
 
@@ -60,14 +61,14 @@ def parse_region(flag: str, text: str, styles: Mapping[str, type]) -> Region:
         styles: Styles by name.
 
     Raises:
-        OptionError: If there is no mask or no such style.
+        OptionError: If there is no mask or no such style, or what follows @ are no frames.
         MediaError: If a picture that is a parameter cannot be read.
     """
     parts = text.split(":")
     for number in range(1, len(parts)):
         if parts[number] in styles:
             style = parse_member(flag, ":".join(parts[number:]), styles)
-            mask, frames = _mask_and_frames(":".join(parts[:number]))
+            mask, frames = _mask_and_frames(flag, ":".join(parts[:number]))
             return Region(mask, style, frames)
     raise OptionError(
         f"{flag} {text}: write MASK:STYLE, such as mask.png:hatching, or MASK@FRAME:STYLE; styles "
@@ -75,12 +76,25 @@ def parse_region(flag: str, text: str, styles: Mapping[str, type]) -> Region:
     )
 
 
-def _mask_and_frames(text: str) -> tuple[str, tuple[int, ...]]:
+def _mask_and_frames(flag: str, text: str) -> tuple[str, tuple[int, ...]]:
     """A mask and the frames that it was drawn for, unless the whole is the name of a file."""
     mask, _, frames = text.rpartition("@")
-    if mask and _FRAMES.fullmatch(frames) and not Path(text).exists():
+    if not mask or _is_there(text):
+        return text, ()
+    if _FRAMES.fullmatch(frames):
         return mask, tuple(sorted({int(frame) for frame in frames.split(",")}))
+    if _is_there(mask):
+        raise OptionError(
+            f"{flag} {text}: {frames!r} are no frames; after @ stand their numbers, such as "
+            "MASK@57 or MASK@57,120"
+        )
     return text, ()
+
+
+def _is_there(name: str) -> bool:
+    """Whether a name is that of a file or of numbered stills."""
+    pattern = input_pattern(name)
+    return Path(name).exists() if pattern is None else bool(pattern.numbers())
 
 
 def _parameters(cls: type) -> dict[str, Any]:

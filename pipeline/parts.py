@@ -17,8 +17,8 @@ import numpy as np
 
 from pipeline.animate import Animated, render, solve
 from pipeline.drawing import check_drawing
-from pipeline.followed import check_followed
 from pipeline.job import Job
+from pipeline.own_frames import check_followed
 from pipeline.past import check_track_place
 from pipeline.plan import plan
 from pipeline.progress import Progress
@@ -61,8 +61,8 @@ def animate_in_parts(job: Job, progress: Progress) -> Animated:
     begun = perf_counter()
     both = _Halves(progress)
     info = probe(job.source)
-    check_drawing(job, info)
     check_followed(job, info)
+    check_drawing(job, info)
     if job.track is None and job.resume:
         raise OptionError("--resume: nothing is left to go on with; name a --track FILE.mtrk")
     track = job.track or PendingFile(job.output).path.with_suffix(ENDING)

@@ -5,9 +5,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from stages.frame import Frame
 from stages.gray import gray_of
-from stages.media import Decoder, FrameRange, open_decoder, probe
-from warp_kernels.errors import MediaError
+from stages.media import Decoder, FrameRange, input_pattern, open_decoder, probe
+from warp_kernels.errors import MediaError, OptionError
 from warp_kernels.styles import Style
 
 BLACK = 0
@@ -68,12 +69,7 @@ class Mask:
         if self._last is not None and (self._is_still or self._last[0] == index):
             return self._last[1]
         first = 0 if self._is_still else index
-        if self._decoder is None:
-            wanted = FrameRange(first, first if self._is_single else None)
-            self._decoder = open_decoder(self._path, wanted, paper=BLACK)
-        found = next(self._decoder, None)
-        while found is not None and found.index < first:
-            found = next(self._decoder, None)
+        found = self._found(first)
         if found is None or found.index != first:
             raise MediaError(
                 self._path,
@@ -83,6 +79,19 @@ class Mask:
         gray = np.rint(255.0 * gray_of(found.pixels)).astype(np.uint8)
         self._last = (index, gray)
         return gray
+
+    def _found(self, first: int) -> Frame | None:
+        """The first picture with this number or a higher one, or None if it is not there."""
+        pattern = input_pattern(self._path)
+        if self._is_single and pattern is not None and first not in pattern.numbers():
+            return None
+        try:
+            if self._decoder is None:
+                wanted = FrameRange(first, first if self._is_single else None)
+                self._decoder = open_decoder(self._path, wanted, paper=BLACK)
+            return next((frame for frame in self._decoder if frame.index >= first), None)
+        except OptionError:  # it speaks of the frames of a source
+            return None
 
     def close(self) -> None:
         """Close the file."""

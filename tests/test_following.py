@@ -1,5 +1,6 @@
 """Regions that stay with their triangles: chosen by a mask once, then inherited, until a cut."""
 
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
@@ -7,18 +8,27 @@ import cv2
 import numpy as np
 import pytest
 
+from pipeline import parts
+from pipeline.animate import animate
 from pipeline.cli import main
+from pipeline.job import Job
 from pipeline.member_spec import parse_region
+from pipeline.own_frames import check_followed
+from pipeline.progress import Progress
 from pipeline.track import TrackReader
 from stages.correspond import kept_triangles
 from stages.edits import flip_edges, split_triangles
 from stages.following import inherited, under_mask
+from stages.media import probe
+from stages.regions import Region
 from stages.render import Renderer
+from tests import media_samples as samples
 from tests.golden_images import write_png
 from tests.meshes import HEIGHT, WIDTH, random_mesh, two_triangles
 from tests.snapshots import restless_shot, snapshot_with
 from tests.tracks import COUNT, CUT, write_clip
 from warp_kernels.device import Device
+from warp_kernels.errors import OptionError
 from warp_kernels.styles import STYLES, Flat
 
 QUICK = ("--iterations", "2", "--frame-iterations", "4", "--triangles", "60")
@@ -34,6 +44,10 @@ def clip(tmp_path_factory: pytest.TempPathFactory) -> Path:
     mask = np.zeros((SHAPE[1], SHAPE[0], 3), np.uint8)
     mask[:, :48] = 255
     write_png(folder / "mask.png", mask)
+    for number in (1, 3):
+        write_png(folder / f"gap_{number}.png", mask)
+    write_png(folder / "small.png", mask[:, 48:])
+    samples.write_video(folder / "short.mp4", [mask, mask])
     return write_clip(folder / "in.mp4")
 
 
@@ -206,15 +220,90 @@ def test_name_of_a_mask_may_hold_the_sign(tmp_path: Path) -> None:
     assert parse_region("--region", "a@9,2:flat", STYLES).frames == (2, 9)
 
 
+@pytest.mark.parametrize("name", ["mask.png", "gap_#.png"])
+@pytest.mark.parametrize("slip", ["1-2", "-1", "", "1,", "x"])
+def test_slips_after_the_sign_are_no_names(name: str, slip: str, clip: Path) -> None:
+    """Of a mask that is there they are told how frames are written."""
+    with pytest.raises(OptionError, match="MASK@57 or MASK@57,120") as caught:
+        parse_region("--region", f"{clip.with_name(name)}@{slip}:flat", STYLES)
+    assert f"{name}@{slip}: {slip!r} are no frames" in str(caught.value)
+
+
+def test_stills_go_by_their_numbers(clip: Path, tmp_path: Path, capsys) -> None:
+    """Those that do not begin with 0 can be followed, and no frame beyond them."""
+    for number in range(100, 104):
+        write_png(tmp_path / f"s_{number}.png", samples.picture(*SHAPE, number))
+    stills = tmp_path / "s_###.png"
+    found = frames("animate", stills, tmp_path / "a", *QUICK, *region(clip, 101))
+    assert len(found) == 4
+    assert (decoded(found[1])[:, :20] == (255, 0, 0)).all()
+    for frame in (0, 99, 104):
+        out = ["-o", str(tmp_path / "b.mp4"), "--progress", "none"]
+        assert main(["animate", str(stills), *out, *region(clip, frame)]) == 2
+        assert "it has stills 100 to 103" in capsys.readouterr().err
+
+
+def test_declared_number_of_frames_is_a_hint(clip: Path) -> None:
+    """Beyond it frames are counted."""
+    mask = Region(str(clip.with_name("mask.png")), Flat(), (COUNT - 1,))
+    job = Job(clip, clip.with_name("out.mp4"), regions=(mask,))
+    for count in (None, 3, COUNT):
+        info = replace(probe(clip), frame_count=count)
+        check_followed(job, info)
+        beyond = replace(job, regions=(replace(mask, frames=(COUNT,)),))
+        with pytest.raises(OptionError, match="it has frames 0 to 11"):
+            check_followed(beyond, info)
+
+
+def test_mask_of_a_frame_between_times(clip: Path, track: Path, tmp_path: Path) -> None:
+    """The first and the last frame of a range of times can be followed from."""
+    times = ("--start", "0.04", "--end", "0.12")
+    for frame in (1, 3):
+        folder = tmp_path / str(frame)
+        assert len(frames("animate", clip, folder, *QUICK, *times, *region(clip, frame))) == 3
+
+
+def test_what_goes_on_may_follow_from_what_is_there(clip: Path, tmp_path: Path) -> None:
+    """A frame of the track serves although this run solves later ones alone."""
+    kept = str(tmp_path / "kept.mtrk")
+    quiet = ("--progress", "none")
+    assert main(["solve", str(clip), "-o", kept, "--frames", "0-2", *QUICK, *quiet]) == 0
+    flags = ("--track", kept, "--resume", "--frames", "2-4", *region(clip, 1))
+    assert list(frames("animate", clip, tmp_path / "a", *QUICK, *flags)) == [2, 3, 4]
+
+
+def test_nothing_is_drawn_from_stale_memory(clip: Path, tmp_path: Path) -> None:
+    """Without shares a followed style is not drawn, and solving and drawing at once is refused."""
+    snapshot = snapshot_with(random_mesh(1), np.zeros((random_mesh(1).triangle_count, 3)))
+    size = (WIDTH, HEIGHT)
+    renderer = Renderer(Device("cpu"), size, size, (Flat(),), (Flat(),), (0,))
+    count = snapshot.mesh.triangle_count
+    renderer.render(snapshot, shares=np.zeros((count, 1), np.uint8))
+    for shares in (None, np.zeros((count, 2), np.uint8), np.zeros((count - 1, 1), np.uint8)):
+        with pytest.raises(ValueError, match="shares"):
+            renderer.render(snapshot, shares=shares)
+    mask = Region(str(clip.with_name("mask.png")), Flat(), (2,))
+    with pytest.raises(OptionError, match=r"mask\.png@2"):
+        animate(Job(clip, tmp_path / "out.mp4", regions=(mask,)), Progress())
+    assert not list(tmp_path.iterdir())
+
+
 @pytest.mark.parametrize(
     ("command", "flags", "named"),
     [
-        ("render", ("{mask}@50:flat",), "it has frames 0 to 11"),
+        ("render", ("{mask}@50:flat",), "mask.png@50: no frame 50 was solved, only frames 0 to 11"),
+        ("render", ("{gap}@2:flat",), "gap_#.png@2: "),
         ("animate", ("{mask}@50:flat",), "no frame 50"),
         ("animate", ("{mask}@2:flat", "--frames", "3-5"), "no frame 2"),
         ("animate", ("{mask}@2:flat", "--frames", "1-5x2"), "no frame 2"),
         ("animate", ("{mask}@2:flat", "--independent"), "--independent"),
-        ("render", ("no_such.png@2:flat",), "no_such.png"),
+        ("animate", ("{mask}@0:flat", "--start", "0.05", "--end", "0.15"), "mask.png@0: frame 0"),
+        ("animate", ("{mask}@4:flat", "--start", "0.05", "--end", "0.15"), "mask.png@4: frame 4"),
+        ("animate", ("{gap}@1,2:flat",), "gap_#.png@2: has no mask for frame 2"),
+        ("animate", ("{short}@1,2:flat",), "short.mp4@2: has no mask for frame 2"),
+        ("animate", ("{small}@2:flat",), "small.png@2: the mask is 48x64"),
+        ("animate", ("no_such.png@2:flat",), "--region no_such.png@2: "),
+        ("render", ("no_such.png@2:flat",), "--region no_such.png@2: "),
         ("render", ("{mask}@x:flat",), "mask.png@x"),
     ],
 )
@@ -226,9 +315,14 @@ def test_mistakes_are_one_line(
     track: Path,
     tmp_path: Path,
     capsys,
+    monkeypatch,
 ) -> None:
     """What is wrong and what may be done instead, before anything is solved; nothing is left."""
-    text = [flag.format(mask=clip.with_name("mask.png")) for flag in flags]
+    begun: list[Job] = []
+    monkeypatch.setattr(parts, "solve_in_parts", lambda job, progress: begun.append(job))
+    names = {"mask": "mask.png", "gap": "gap_#.png", "short": "short.mp4", "small": "small.png"}
+    masks = {key: clip.with_name(name) for key, name in names.items()}
+    text = [flag.format(**masks) for flag in flags]
     source = str(track if command == "render" else clip)
     out = tmp_path / "out.mp4"
     assert main([command, source, "-o", str(out), "--region", *text, "--progress", "none"]) in (
@@ -238,4 +332,6 @@ def test_mistakes_are_one_line(
     line = capsys.readouterr().err
     assert named in line
     assert line.count("\n") == 1
+    assert str(tmp_path) not in line
+    assert not begun
     assert not list(tmp_path.iterdir())

@@ -128,12 +128,17 @@ class Canvas:
             paint: The triangles, then the M - T vanished ones that show through.
             layers: What fading triangles let through; None where none fades, M is T then.
             source: The picture [code values], [H, W, 3] uint8; looked at if a style needs it.
-            masks: For each masked style where it is drawn (255) and where not (0), [H, W] uint8.
+            masks: For each masked style that is not followed where it is drawn (255) and where
+                not (0), [H, W] uint8.
 
         Returns:
             Code values, [rows, columns, 3] uint8, or [rows, columns, 4] with straight alpha if no
             style of the stack is opaque; a copy of its own.
+
+        Raises:
+            ValueError: If the paint does not say for every followed region which triangles it has.
         """
+        self._check_shares(paint)
         self._reserve(
             vertices=len(vertices),
             triangles=len(triangles),
@@ -161,11 +166,18 @@ class Canvas:
         self.device.run(phases)
         return self.device.read(self._pixels, self.output[1])
 
+    def _check_shares(self, paint: Paint) -> None:
+        """Refuse a paint without what followed styles look at: memory holds an earlier one's."""
+        found = None if paint.shares is None else paint.shares.shape
+        wanted = (len(paint.colors), self._followed)
+        if self._followed and found != wanted:
+            raise ValueError(f"shares of followed regions: {found}, and {wanted} are needed")
+
     def _write_paint(self, paint: Paint, *, shapes: bool) -> None:
         """Hand over colours, and shapes if they are looked at."""
         write, tables = self.device.write, self._tables
         write(tables["colors"], paint.colors)
-        if self._followed and paint.shares is not None:
+        if self._followed:
             write(tables["shares"], paint.shares)
         write(self._curved, np.array([0 if paint.curvatures is None else 1]))
         if paint.curvatures is not None:
