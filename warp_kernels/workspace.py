@@ -67,8 +67,7 @@ class Workspace:
         self.gauge = self._empty(1, wp.vec3d)
         self._load_weights(None)
         self.table = self._empty(table_length(width, height, self.layout), types.entry)
-        self._controls = self._empty(3, wp.float64)
-        self._probe = self._empty(1, wp.int32)
+        self._controls, self._probe = self._empty(3, wp.float64), self._empty(1, wp.int32)
         self._displacement = 0.0
         self._tables = record_image_tables(
             device, self.layout, pixels=self._pixels, weights=self._weights, table_out=self.table
