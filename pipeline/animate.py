@@ -85,7 +85,8 @@ def animate(job: Job, progress: Progress) -> Animated:
         OutputError: If the output cannot be written.
         TrackError: If the track to go on with cannot be.
     """
-    for region in job.followed:
+    if job.followed:
+        region = job.followed[0]
         raise OptionError(
             f"--region {region.mask}@{region.frames[0]}: a frame is drawn here before later ones "
             "are solved, and this region may come from these; use animate_in_parts"

@@ -1,6 +1,7 @@
 """The frames for which masks of followed regions were drawn: looked for before any is solved."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 
@@ -75,8 +76,10 @@ def own_mask(region: Region, frame: int, size: tuple[int, int]) -> np.ndarray:
         finally:
             mask.close()
     except MediaError as error:
-        problem, _, remedy = str(error).removeprefix(f"{region.mask}: ").rpartition("; ")
-        raise MediaError(f"--region {region.mask}@{frame}", problem, remedy) from error
+        named = f"--region {region.mask}@{frame}"
+        if error.path != Path(region.mask):  # one of several stills
+            named = f"{named}: {error.path}"
+        raise MediaError(named, error.problem, error.remedy) from error
 
 
 def _solved(job: Job) -> set[int]:

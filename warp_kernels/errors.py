@@ -38,6 +38,8 @@ class MediaError(TrimotionError):
     def __init__(self, path: str | Path, problem: str, remedy: str) -> None:
         super().__init__(f"{path}: {problem}; {remedy}")
         self.path = Path(path)
+        self.problem = problem
+        self.remedy = remedy
 
 
 class OutputError(MediaError):
