@@ -23,6 +23,8 @@ class _Frame:
     take: Take
     colors: np.ndarray
     """Coefficients of positions that count from the triangles' centroids, [T, 3, K]."""
+    limits: np.ndarray | None
+    """What these colours keep to [code values], [T, 2, 3]."""
     vertices: np.ndarray
     """For every vertex its number in the frame before, or -1; [V]."""
     triangles: np.ndarray
@@ -84,7 +86,9 @@ class Smoother:
         mesh = snapshot.mesh
         before = self._window[-1].mesh if self._window else mesh
         colors = with_origins(snapshot.model, snapshot.coefficients, _centres(mesh))
-        return _Frame(take, colors, kept_vertices(before, mesh), kept_triangles(before, mesh))
+        limits = snapshot.bounds.astype(np.float64) if snapshot.model.degree else None
+        links = kept_vertices(before, mesh), kept_triangles(before, mesh)
+        return _Frame(take, colors, limits, *links)
 
     def _next(self) -> Take:
         take = self._window[self._done].take
@@ -100,7 +104,10 @@ class Smoother:
         colors = self._window[place].colors
         colors = colors + self._mean(place, lambda f: f.colors, lambda f: f.triangles)
         coefficients = with_origins(snapshot.model, colors, -_centres(moved))
-        return replace(snapshot, mesh=moved, coefficients=coefficients)
+        limits = self._window[place].limits
+        if limits is not None:
+            limits = limits + self._mean(place, lambda f: f.limits, lambda f: f.triangles)
+        return replace(snapshot, mesh=moved, coefficients=coefficients, limits=limits)
 
     def _mean(
         self,

@@ -29,8 +29,9 @@ def paint_of(snapshot: Snapshot, shares: np.ndarray | None = None) -> Paint:
         gradients[:, 0] += 2 * x * curvatures[:, 1] + y * curvatures[:, 2]
         gradients[:, 1] += x * curvatures[:, 2] + 2 * y * curvatures[:, 3]
         colors = colors - curvatures[:, 0]
-    clipped = np.clip(colors, 0.0, 255.0)
-    return Paint(clipped, gradients, curvatures, corners, mesh.triangle_ids, shares)
+    limits = snapshot.bounds
+    colors = np.clip(colors, limits[:, 0], limits[:, 1])
+    return Paint(colors, gradients, curvatures, limits, corners, mesh.triangle_ids, shares)
 
 
 def _curvatures(snapshot: Snapshot) -> np.ndarray:

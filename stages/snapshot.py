@@ -33,14 +33,26 @@ class Snapshot:
     float64; where pixels have weights, these divided by their mean over the picture are factors
     of the errors."""
     counts: np.ndarray
-    """Pixels covered, or the sum of their weights up to a common factor, shape [T] int64."""
+    """Pixels covered, or the sum of their weights up to a common factor, shape [T] int64; where
+    this is 0 the colour is that of a neighbour."""
+    limits: np.ndarray | None = None
+    """The lowest and the highest value of every channel that a triangle shows, whatever its
+    polynomial says [code values], shape [T, 2, 3]; None for 0 and 255."""
+
+    @property
+    def bounds(self) -> np.ndarray:
+        """The limits, 0 and 255 where there are none [code values], shape [T, 2, 3]."""
+        if self.limits is not None:
+            return self.limits
+        return np.broadcast_to([[[0.0], [255.0]]], (len(self.coefficients), 2, CHANNELS))
 
     @property
     def rmse(self) -> float:
         """Root mean square error over pixels and channels [code values].
 
-        The colours are clipped to 0..255 only when they are drawn, so this is the error of the
-        fit; Eq. 12's R is sqrt(3 / 2) of it. Where pixels have weights the mean is weighted.
+        The colours are clipped to `limits` only when they are drawn, so this is the error of the
+        fit; no pixel leaves the limits, so what is drawn at the pixels' centres has no larger one.
+        Eq. 12's R is sqrt(3 / 2) of it. Where pixels have weights the mean is weighted.
         """
         samples = CHANNELS * self.mesh.width * self.mesh.height
         return float(np.sqrt(2.0 * self.energies.sum() / samples))

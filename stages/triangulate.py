@@ -7,9 +7,11 @@ import numpy as np
 from stages.advect import Carried
 from stages.appraise import Appraiser
 from stages.approximate import Approximator
+from stages.blank import color_owners
 from stages.convergence import Convergence
 from stages.frame import Frame
 from stages.layouts import Layout
+from stages.limits import limits_of
 from stages.mesh import Mesh
 from stages.optimize import OptimizeOptions, load_mesh, optimize
 from stages.quality import FALL, Trial, smallest_that_reaches
@@ -21,6 +23,7 @@ from stages.topology.goal import SLIVER_HEIGHT
 from warp_kernels.color_model import CHANNELS, COLOR_MODELS, ColorModel
 from warp_kernels.device import Device
 from warp_kernels.errors import OptionError
+from warp_kernels.extremes import Extremes
 from warp_kernels.solve import SUMS
 from warp_kernels.workspace import Workspace
 
@@ -146,6 +149,7 @@ class Triangulator:
             fitted = drawn
         if fitted is not options.model or options.space != "rgb":
             self._fitting = Workspace(device, size, fitted, weighted=weighted)
+        self._extremes = Extremes(self._fitting)
 
     def first(self, frame: Frame, layout: Layout, rng: np.random.Generator) -> Snapshot:
         """Triangulate a frame from scratch.
@@ -267,15 +271,21 @@ class Triangulator:
             fitting.load_image(frame.pixels, frame.weights)
             load_mesh(fitting, mesh)
         coefficients, energies, counts = fitting.fit()
+        owners = color_owners(mesh, counts)
+        limits = None
+        if fitting.model.degree > 0:
+            extremes = self._extremes.measure(mesh.triangle_count)
+            limits = limits_of(mesh, fitting.model, coefficients, extremes)[owners]
         return Snapshot(
             frame_index=frame.index,
             pts=frame.pts,
             time_base=frame.time_base,
             mesh=mesh,
             model=fitting.model,
-            coefficients=coefficients,
+            coefficients=coefficients[owners],
             energies=energies,
             counts=counts,
+            limits=limits,
         )
 
 

@@ -187,6 +187,7 @@ class Canvas:
             for name in ("anchors", "sides", "incircles", "lines"):
                 write(tables[name], getattr(found, name))
             write(tables["gradients"], paint.gradients)
+            write(tables["limits"], paint.limits)
             write(tables["hashes"], paint.hashes)
 
     def _write_layers(self, layers: Layers) -> None:
@@ -217,6 +218,7 @@ class Canvas:
             "colors": self._empty((layers, 3), float),
             "gradients": self._empty((layers, 2), wp.vec3f),
             "curvatures": self._empty((layers, 4, 3), float),
+            "limits": self._empty((layers, 2, 3), float),
             "anchors": self._empty(layers, wp.vec2i),
             "sides": self._empty((layers, 2, 2), float),
             "incircles": self._empty((layers, 3), float),

@@ -12,11 +12,14 @@ class Paint:
     """Shapes and colour polynomials of some triangles."""
 
     colors: np.ndarray
-    """Mean colours, within 0..255 [code values], [N, 3]."""
+    """Mean colours, within `limits` [code values], [N, 3]."""
     gradients: np.ndarray
     """Change of colour to the right and down, at the centroid [code values / px], [N, 2, 3]."""
     curvatures: np.ndarray | None
     """What quadratic colours add, see `Scene`, [N, 4, 3]; None for others."""
+    limits: np.ndarray
+    """The lowest and the highest values that may be shown, within 0..255 [code values],
+    [N, 2, 3]."""
     corners: np.ndarray
     """Positions of the corners, corner 0 first [px of the picture], [N, 3, 2]."""
     ids: np.ndarray
@@ -30,6 +33,7 @@ class Paint:
             self.colors[triangles],
             self.gradients[triangles],
             None if self.curvatures is None else self.curvatures[triangles],
+            self.limits[triangles],
             self.corners[triangles],
             self.ids[triangles],
             None if self.shares is None else self.shares[triangles],
@@ -56,6 +60,7 @@ def joined_paint(parts: list[Paint]) -> Paint:
         np.concatenate([part.colors for part in parts]),
         np.concatenate([part.gradients for part in parts]),
         np.concatenate(curvatures) if curvatures else None,
+        np.concatenate([part.limits for part in parts]),
         np.concatenate([part.corners for part in parts]),
         np.concatenate([part.ids for part in parts]),
         np.concatenate(shares) if shares else None,

@@ -50,6 +50,8 @@ class Scene:
     [T, 4, 3]."""
     curved: wp.array(dtype=int)
     """1 where colours are quadratic, 0 where `curvatures` are not to be read, [1]."""
+    limits: wp.array3d(dtype=float)
+    """The lowest and the highest values that a triangle may show [code values], [T, 2, 3]."""
     anchors: wp.array(dtype=wp.vec2i)
     """Place of every triangle's corner 0, which starts its base edge [2^-16 px], [T]."""
     sides: wp.array3d(dtype=float)

@@ -62,7 +62,7 @@ class Workspace:
         self.layout = layout_of_moments(model, weighted=weighted)
         width, height = size
         types = moment_types(self.layout)
-        self._pixels = self._empty((height, width), wp.vec3ub)
+        self.pixels = self._empty((height, width), wp.vec3ub)
         self._weights = self._empty((height, width) if self.layout.wide else (1, 1), wp.uint8)
         self.gauge = self._empty(1, wp.vec3d)
         self._load_weights(None)
@@ -70,7 +70,7 @@ class Workspace:
         self._controls, self._probe = self._empty(3, wp.float64), self._empty(1, wp.int32)
         self._displacement = 0.0
         self._tables = record_image_tables(
-            device, self.layout, pixels=self._pixels, weights=self._weights, table_out=self.table
+            device, self.layout, pixels=self.pixels, weights=self._weights, table_out=self.table
         )
         self._counts = (0, 0, 0)
         self.generation = 0
@@ -98,7 +98,7 @@ class Workspace:
         Deviation: the paper has no weights.
         """
         self.placed = None  # what was summed along edges belongs to the picture before
-        self.device.write(self._pixels, pixels)
+        self.device.write(self.pixels, pixels)
         if self.weighted:
             self._load_weights(weights)
         elif weights is not None:
@@ -365,7 +365,7 @@ class Workspace:
                 vertices=vertices,
                 triangles=self.triangles,
                 probe=self._probe,
-                pixels=self._pixels,
+                pixels=self.pixels,
                 weights=self._weights,
                 color_out=self._color_sums,
                 area_out=self._area_sums,

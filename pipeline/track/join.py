@@ -10,7 +10,7 @@ from pathlib import Path
 from pipeline.track.agreement import differing_flags
 from pipeline.track.header import Header, write_header
 from pipeline.track.reader import TrackReader
-from pipeline.track.schema import TABLES, create, put_in_place, writing
+from pipeline.track.schema import TABLES, create, has_table, put_in_place, writing
 from stages.media import FrameRange
 from stages.media.commit import PendingFile
 from warp_kernels.errors import OptionError, TrackError
@@ -113,6 +113,8 @@ def _copy(connection: sqlite3.Connection, path: Path) -> None:
     connection.execute("ATTACH ? AS part", (f"{path.absolute().as_uri()}?mode=ro",))
     connection.execute("BEGIN")
     for table in TABLES:
+        if not has_table(connection, table, "part"):
+            continue
         connection.execute(f"INSERT INTO {table} SELECT * FROM part.{table} ORDER BY frame")
     connection.execute("COMMIT")
     connection.execute("DETACH part")

@@ -12,7 +12,7 @@ import numpy as np
 
 from pipeline.track.blobs import unpack
 from pipeline.track.header import Header, read_header
-from pipeline.track.schema import ENDING, MAGIC, open_existing, reading
+from pipeline.track.schema import ENDING, MAGIC, has_table, open_existing, reading
 from stages.media import FrameRange
 from stages.mesh import Mesh
 from stages.snapshot import Snapshot
@@ -149,7 +149,16 @@ class TrackReader:
             coefficients=unpack(coefficients, "<f8", (T, CHANNELS, model.term_count)),
             energies=unpack(energies, "<f8", (T,)),
             counts=unpack(counts, "<i8", (T,)),
+            limits=self._limits(frame, T),
         )
+
+    def _limits(self, frame: int, T: int) -> np.ndarray | None:
+        """What colours keep to; constant ones need nothing, and old tracks say nothing."""
+        with reading(self.path):
+            if not has_table(self._connection, "limits"):
+                return None
+        found = self._all("SELECT limits FROM limits WHERE frame = ?", frame)
+        return unpack(found[0][0], "u1", (T, 2, CHANNELS)) if found else None
 
     def _all(self, statement: str, *values: object) -> list[Any]:
         with reading(self.path):

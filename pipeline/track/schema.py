@@ -10,6 +10,7 @@ Blobs are little-endian arrays, packed as `blobs` tells:
     meshes      vertices [V, 2] float64 (px), coefficients [T, 3, K] float64, energies [T] float64,
                 counts [T] int64
     topologies  triangles [T, 3] int32, vertex_ids [V] int64, triangle_ids [T] int64
+    limits      limits [T, 2, 3] uint8 of polynomial colours; tracks of earlier programs have none
 """
 
 import sqlite3
@@ -59,7 +60,10 @@ CREATE TABLE topologies (
 );
 """
 
-TABLES = ("frames", "meshes", "topologies")
+LIMITS = "CREATE TABLE IF NOT EXISTS limits (frame INTEGER PRIMARY KEY, limits BLOB NOT NULL)"
+"""Added to a track that has no such table when a run goes on with it."""
+
+TABLES = ("frames", "meshes", "topologies", "limits")
 """The tables whose rows belong to frames, `frame` first."""
 
 
@@ -77,7 +81,7 @@ def create(path: Path) -> sqlite3.Connection:
         connection.executescript(
             f"PRAGMA application_id = {APPLICATION}; PRAGMA user_version = {FORMAT};"
             "PRAGMA synchronous = NORMAL;"
-            f"BEGIN; {SCHEMA} COMMIT;"
+            f"BEGIN; {SCHEMA} {LIMITS}; COMMIT;"
         )
     return connection
 
@@ -125,6 +129,18 @@ def open_existing(path: Path) -> sqlite3.Connection:
             connection.close()
             raise
     return connection
+
+
+def has_table(connection: sqlite3.Connection, table: str, schema: str = "main") -> bool:
+    """Whether a track has a table: those of earlier programs lack some.
+
+    Args:
+        connection: The track.
+        table: The table's name.
+        schema: Under which name the track is attached.
+    """
+    names = f"SELECT 1 FROM {schema}.sqlite_master WHERE type = 'table' AND name = ?"
+    return connection.execute(names, (table,)).fetchone() is not None
 
 
 @contextmanager

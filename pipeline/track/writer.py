@@ -10,7 +10,7 @@ import numpy as np
 
 from pipeline.track.blobs import pack
 from pipeline.track.header import Header, write_header
-from pipeline.track.schema import create, open_existing, put_in_place, writing
+from pipeline.track.schema import LIMITS, create, open_existing, put_in_place, writing
 from stages.media.commit import PendingFile
 from stages.mesh import Mesh
 from stages.snapshot import Snapshot
@@ -55,6 +55,7 @@ class TrackWriter:
         writer._connection = open_existing(path)
         with writing(path):
             write_header(writer._connection, writer._header)
+            writer._connection.execute(LIMITS)
             (writer._holder,) = writer._connection.execute(
                 "SELECT topology FROM frames WHERE frame = ?", (last.frame_index,)
             ).fetchone()
@@ -102,6 +103,8 @@ class TrackWriter:
         rows: dict[str, tuple[object, ...]] = {"frames": row, "meshes": (frame, *arrays)}
         if brings:
             rows["topologies"] = (frame, *_packed_topology(mesh))
+        if snapshot.limits is not None:
+            rows["limits"] = (frame, pack(snapshot.limits, "u1"))
         connection = self._opened()
         with writing(self._path):
             connection.execute("BEGIN IMMEDIATE")

@@ -48,10 +48,18 @@ def bend(scene: Scene, triangle: int, channel: int, right: float, down: float) -
 
 
 @wp.func
+def limited(scene: Scene, triangle: int, channel: int, value: float) -> float:
+    """A value within what the triangle may show."""
+    first = 6 * triangle + channel
+    table = wp.array(ptr=scene.limits.ptr, shape=(6 * scene.limits.shape[0],), dtype=float)
+    return wp.clamp(value, table[first], table[first + 3])
+
+
+@wp.func
 def gradient_color(
     scene: Scene, parameters: StyleParameters, sample: Sample, below: wp.vec4f
 ) -> Ink:
-    """The best linear or quadratic colour at the sample, within the range of code values."""
+    """The best linear or quadratic colour at the sample, within what the triangle may show."""
     t = sample.triangle
     n = prepared_for(scene, parameters, t)
     at = sample.offset
@@ -64,9 +72,9 @@ def gradient_color(
         red += bend(scene, t, 0, right, down)
         green += bend(scene, t, 1, right, down)
         blue += bend(scene, t, 2, right, down)
-    red = wp.clamp(red, 0.0, 255.0)
-    green = wp.clamp(green, 0.0, 255.0)
-    return full_ink(wp.vec3f(red, green, wp.clamp(blue, 0.0, 255.0)))
+    red = limited(scene, t, 0, red)
+    green = limited(scene, t, 1, green)
+    return full_ink(wp.vec3f(red, green, limited(scene, t, 2, blue)))
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,37 @@
+"""Triangles that lie between the pixels' centres: whose colour they take."""
+
+import numpy as np
+
+from stages.mesh import Mesh
+
+
+def color_owners(mesh: Mesh, counts: np.ndarray) -> np.ndarray:
+    """For every triangle the one whose colour it shows.
+
+    That is itself. A triangle that covers no pixel's centre has no colour of its own, and yet parts
+    of pixels are drawn in it; it goes on as the neighbour across its longest side, or across the
+    longest one that leads to a colour. As a needle it lies along that side: it looks like a part
+    of the neighbour, and where the colour changes across the picture it goes on without a seam.
+
+    Args:
+        mesh: The triangles.
+        counts: Pixels covered, or the sum of their weights, [T].
+
+    Returns:
+        Triangle numbers, [T].
+    """
+    owners = np.arange(mesh.triangle_count)
+    blank = np.flatnonzero(counts == 0)
+    while len(blank):
+        twins = mesh.twins.reshape(-1, 3)[blank]
+        corners = mesh.corners[blank]
+        lengths = np.linalg.norm(corners[:, [1, 2, 0]] - corners, axis=2)
+        beside = owners[twins // 3]
+        lengths[(twins < 0) | (counts[beside] == 0)] = -1.0
+        best = (np.arange(len(blank)), lengths.argmax(axis=1))
+        found = lengths[best] >= 0.0
+        if not found.any():
+            break  # not one triangle covers a pixel
+        owners[blank[found]] = beside[best][found]
+        blank = blank[~found]
+    return owners
