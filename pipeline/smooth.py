@@ -23,7 +23,7 @@ class _Frame:
     take: Take
     colors: np.ndarray
     """Coefficients of positions that count from the triangles' centroids, [T, 3, K]."""
-    limits: np.ndarray | None
+    limits: np.ndarray
     """What these colours keep to [code values], [T, 2, 3]."""
     vertices: np.ndarray
     """For every vertex its number in the frame before, or -1; [V]."""
@@ -86,7 +86,7 @@ class Smoother:
         mesh = snapshot.mesh
         before = self._window[-1].mesh if self._window else mesh
         colors = with_origins(snapshot.model, snapshot.coefficients, _centres(mesh))
-        limits = snapshot.bounds.astype(np.float64) if snapshot.model.degree else None
+        limits = snapshot.bounds.astype(np.float64)
         links = kept_vertices(before, mesh), kept_triangles(before, mesh)
         return _Frame(take, colors, limits, *links)
 
@@ -105,8 +105,7 @@ class Smoother:
         colors = colors + self._mean(place, lambda f: f.colors, lambda f: f.triangles)
         coefficients = with_origins(snapshot.model, colors, -_centres(moved))
         limits = self._window[place].limits
-        if limits is not None:
-            limits = limits + self._mean(place, lambda f: f.limits, lambda f: f.triangles)
+        limits = limits + self._mean(place, lambda f: f.limits, lambda f: f.triangles)
         return replace(snapshot, mesh=moved, coefficients=coefficients, limits=limits)
 
     def _mean(
