@@ -19,7 +19,9 @@ class Appraiser:
 
     def __init__(self, workspace: Workspace, least_height: float) -> None:
         self._workspace = workspace
-        self._survey = Survey(workspace, least_height)
+        self._least_height = least_height
+        self._survey = Survey(workspace)
+        self.limit(np.inf)
         self._measured: Mesh | None = None
         self._energies = np.zeros(0)
         self.colors = np.zeros((0, 3))
@@ -46,9 +48,14 @@ class Appraiser:
         """The picture has changed: what was measured is void."""
         self._measured = None
 
-    def limit_area(self, largest_area: float) -> None:
-        """Bar changes that would make a triangle larger than this [px^2]."""
-        self._survey.limit_area(largest_area)
+    def limit(self, largest_area: float, *, is_height_free: bool = False) -> None:
+        """Bar changes that would make a triangle larger than this [px^2], or too thin.
+
+        Args:
+            largest_area: Largest area [px^2].
+            is_height_free: Whether triangles may become as thin as can be.
+        """
+        self._survey.limit(0.0 if is_height_free else self._least_height, largest_area)
 
     def flip_gains(self, half_edges: np.ndarray) -> np.ndarray:
         """Energy that flipping each edge of the measured mesh saves [code value^2 px], [N]."""

@@ -53,11 +53,11 @@ def collapse_slivers(
         if not len(slivers):
             break
         slivers = slivers[np.argsort(mesh.heights[slivers], kind="stable")]
-        mended = _press(mesh, slivers, min_height)
+        mended = press_slivers(mesh, slivers, min_height)
         if mended is mesh:
             mended = _collapse(mesh, slivers, 0, min_height)
         if mended is mesh:
-            mended = _flip_longest(mesh, slivers)
+            mended = flip_longest(mesh, slivers)
         if mended is mesh:
             mended = _collapse(mesh, slivers, 1, min_height)
         if mended is mesh:
@@ -66,7 +66,7 @@ def collapse_slivers(
     return mesh
 
 
-def _press(mesh: Mesh, slivers: np.ndarray, min_height: float) -> Mesh:
+def press_slivers(mesh: Mesh, slivers: np.ndarray, min_height: float) -> Mesh:
     """Press those onto the border whose longest edge lies there.
 
     Args:
@@ -97,7 +97,7 @@ def _collapse(mesh: Mesh, slivers: np.ndarray, rank: int, min_height: float) -> 
     half_edges = np.repeat(ranked, 2)
     reverse = np.tile([False, True], len(slivers))
     origins, destinations = edge_ends(mesh, half_edges, reverse)
-    before, after = _heights_around(mesh, origins, destinations)
+    before, after = heights_around(mesh, origins, destinations)
     legal = keeps_border(mesh, half_edges, origins)
     legal &= (after > 0) & (after >= np.minimum(before, min_height))
     # Of the two directions of an edge the better one comes first.
@@ -110,7 +110,7 @@ def _collapse(mesh: Mesh, slivers: np.ndarray, rank: int, min_height: float) -> 
     return collapse_edges(mesh, half_edges[chosen], reverse[chosen])
 
 
-def _heights_around(
+def heights_around(
     mesh: Mesh, origins: np.ndarray, destinations: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Lowest height among the triangles that survive each collapse, before and after [px, N]."""
@@ -121,19 +121,32 @@ def _heights_around(
     return before, after
 
 
-def _flip_longest(mesh: Mesh, slivers: np.ndarray) -> Mesh:
+def flip_longest(mesh: Mesh, slivers: np.ndarray) -> Mesh:
     """Flip the longest edges of some triangles where the lower triangle of the pair gains.
 
     Args:
         mesh: A valid mesh.
         slivers: Triangle numbers, shape [S], the most urgent first.
     """
+    longest = raising_flips(mesh, slivers)
+    chosen = independent_flips(mesh, longest)
+    return flip_edges(mesh, longest[chosen]) if chosen.any() else mesh
+
+
+def raising_flips(mesh: Mesh, slivers: np.ndarray) -> np.ndarray:
+    """The longest edges of some triangles whose flip raises the lower triangle of the pair.
+
+    Args:
+        mesh: A valid mesh.
+        slivers: Triangle numbers, shape [S], the most urgent first.
+
+    Returns:
+        Half-edge numbers, in this order, shape [N].
+    """
     longest = 3 * slivers + _lengths(mesh, slivers).argmax(axis=1)
     longest = longest[flippable(mesh, longest)]
     lower = mesh.heights[edge_triangles(mesh, longest)].min(axis=1)
-    longest = longest[flipped_heights(mesh, longest) > lower]
-    chosen = independent_flips(mesh, longest)
-    return flip_edges(mesh, longest[chosen]) if chosen.any() else mesh
+    return longest[flipped_heights(mesh, longest) > lower]
 
 
 def _lengths(mesh: Mesh, triangles: np.ndarray) -> np.ndarray:

@@ -16,21 +16,18 @@ class Survey:
 
     Args:
         workspace: Holds the picture and the mesh.
-        least_height: Changes that would leave a triangle thinner than this are impossible [px].
     """
 
-    def __init__(self, workspace: Workspace, least_height: float) -> None:
+    def __init__(self, workspace: Workspace) -> None:
         self._workspace = workspace
         self._limits = workspace.device.empty(2, wp.float64)
-        self._least_height = least_height
-        self.limit_area(np.inf)
+        self.limit(0.0, np.inf)
         self._capacity = 0
         self._phases: dict[tuple[str, int, int], Phase] = {}
 
-    def limit_area(self, largest_area: float) -> None:
-        """Bar changes that would make a triangle larger than this [px^2]."""
-        limits = np.array([self._least_height, largest_area])
-        self._workspace.device.write(self._limits, limits)
+    def limit(self, least_height: float, largest_area: float) -> None:
+        """Bar changes that would make a triangle thinner [px] or larger [px^2] than this."""
+        self._workspace.device.write(self._limits, np.array([least_height, largest_area]))
 
     def load_topology(self, twins: np.ndarray, corners: np.ndarray) -> None:
         """Take in what the workspace does not know of its mesh.

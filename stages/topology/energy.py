@@ -19,6 +19,7 @@ from stages.mesh import Mesh
 from stages.topology.goal import SLIVER_HEIGHT, Goal
 from stages.topology.growth import Growth
 from stages.topology.ranking import LEAST_GAIN, ranked_collapses, ranked_flips, ranked_splits
+from stages.topology.slivers import remove_slivers
 
 TWICE = Growth(start=1.0, peak=2.0, grown=0.2, settled=0.9)
 """Twice the triangles at first: what is then taken away, one vertex at a time, are those that
@@ -28,7 +29,8 @@ CALM_SLIVER_HEIGHT = 0.3
 that hover about it come and go."""
 
 SLIVER_ROUNDS = 3
-"""Rounds in which slivers collapse; with one alone some starts end in worse places."""
+"""Rounds in which slivers of a first frame collapse; with one alone some starts end in worse
+places."""
 GROWING = 0.02
 """Where more than this part of the triangles is missing, flips come before all else and no vertex
 moves elsewhere."""
@@ -66,10 +68,12 @@ class Energy:
 
         Deviation: the paper keeps the Delaunay property and splits at centroids (Sec. 3.4).
         """
-        appraiser.limit_area(goal.largest_area)
+        appraiser.limit(goal.largest_area)
         mesh = divide_large(mesh, goal.largest_area)
-        thin = CALM_SLIVER_HEIGHT if goal.calm else SLIVER_HEIGHT
-        mesh = collapse_slivers(mesh, thin, most_rounds=SLIVER_ROUNDS)
+        if goal.calm:
+            mesh = remove_slivers(mesh, appraiser, CALM_SLIVER_HEIGHT, goal.largest_area)
+        else:
+            mesh = collapse_slivers(mesh, SLIVER_HEIGHT, most_rounds=SLIVER_ROUNDS)
         free = np.ones(mesh.triangle_count, dtype=bool)
         flips = self._flips(mesh, appraiser, goal)
         flips = flips[independent_flips(mesh, flips)]
