@@ -12,9 +12,9 @@ from warp_kernels.extremes import BRIGHTEST, DARKEST
 
 SLACK = 12.0
 """Most that a colour may leave the range of the pixels below [code values]."""
-REACH = 0.5
-"""A triangle reaches about so far beyond the centres of its outermost pixels, along x and along y
-[px]: there an even slope goes on."""
+REACH = 1.0
+"""Tips of triangles reach about so far beyond the centres of their outermost pixels, along x and
+along y [px]: there an even slope goes on."""
 
 
 def limits_of(

@@ -13,6 +13,7 @@ import numpy as np
 from pipeline.track.blobs import unpack
 from pipeline.track.header import Header, read_header
 from pipeline.track.schema import ENDING, MAGIC, has_table, open_existing, reading
+from stages.blank import color_owners
 from stages.media import FrameRange
 from stages.mesh import Mesh
 from stages.snapshot import Snapshot
@@ -140,15 +141,17 @@ class TrackReader:
             next_vertex_id=next_ids[0],
             next_triangle_id=next_ids[1],
         )
+        counts = unpack(counts, "<i8", (T,))
+        colors = unpack(coefficients, "<f8", (T, CHANNELS, model.term_count))
         return Snapshot(
             frame_index=frame,
             pts=pts,
             time_base=Fraction(info.time_base),
             mesh=mesh,
             model=model,
-            coefficients=unpack(coefficients, "<f8", (T, CHANNELS, model.term_count)),
+            coefficients=colors[color_owners(mesh, counts)],  # black in tracks of old programs
             energies=unpack(energies, "<f8", (T,)),
-            counts=unpack(counts, "<i8", (T,)),
+            counts=counts,
             limits=self._limits(frame, T),
         )
 

@@ -59,7 +59,7 @@ class Energy:
     """How the number of triangles develops in a first frame."""
 
     def adapt(self, mesh: Mesh, appraiser: Appraiser, goal: Goal) -> Mesh:
-        """Collapse slivers, then flip, take vertices away and insert others, all measured once.
+        """Remove slivers, then flip, take vertices away and insert others, all measured once.
 
         Args:
             mesh: A valid mesh.
