@@ -121,7 +121,7 @@ def _several(kinds: tuple[Any, ...], plain: Any, registry: str | None, arrays: b
 
 def _single(hint: Any, plain: Any) -> Any:
     """A truth, a number, a text, a path or a fraction; JSON tells truths from numbers."""
-    written = {bool: bool, int: int, float: (int, float)}.get(hint, str)
+    written: Any = {bool: bool, int: int, float: (int, float)}.get(hint, str)
     if not isinstance(plain, written) or (isinstance(plain, bool) and hint is not bool):
         raise ValueError(f"{reprlib.repr(plain)} instead of {hint.__name__}")
     if hint is float and not math.isfinite(plain):
@@ -140,7 +140,7 @@ def _array(plain: Any, *, unpacked: bool) -> np.ndarray | None:
     kind, shape, data = plain["dtype"], plain["shape"], plain["data"]
     if not isinstance(kind, str) or not re.fullmatch(r"[<>|]?[fiub][1248]", kind):
         raise ValueError(f"an array of {reprlib.repr(kind)}")
-    sides = shape if isinstance(shape, list) and len(shape) <= 4 else [None]
+    sides: list[Any] = shape if isinstance(shape, list) and len(shape) <= 4 else [None]
     if not all(type(side) is int and side >= 0 for side in sides):
         raise ValueError(f"an array of shape {reprlib.repr(shape)}")
     size = math.prod(sides) * np.dtype(kind).itemsize

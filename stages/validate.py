@@ -1,4 +1,4 @@
-"""What every mesh must obey, checked after each edit and each frame, and what is read from files."""
+"""What every mesh must obey, checked after each edit and frame, and what is read must."""
 
 from collections.abc import Iterator
 

@@ -321,8 +321,10 @@ def _warp_name(called: ast.expr) -> str:
 def _calls_warp(call: ast.Call) -> bool:
     """Say whether a call launches, copies, allocates or captures, or asks for devices."""
     if _warp_name(call.func) in WARP_CALLS:
-        return bool(call.args) or not {k.arg for k in call.keywords} <= TYPE_KEYWORDS or (
-            not call.keywords
+        return (
+            bool(call.args)
+            or not {k.arg for k in call.keywords} <= TYPE_KEYWORDS
+            or (not call.keywords)
         )
     name = call.func.attr if isinstance(call.func, ast.Attribute) else ""
     return name in ARRAY_CALLS and not _warp_name(call.func)

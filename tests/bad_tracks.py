@@ -157,9 +157,7 @@ def bombed_frame(connection: sqlite3.Connection, rng: np.random.Generator) -> No
     connection.execute(update, (T // 2 + 2, T, frame))
     for column in ("vertex_ids", "triangle_ids"):
         packed = bomb(8) if rng.random() < 0.5 else pack(np.arange(1 << 20), "<i8")
-        connection.execute(
-            f"UPDATE topologies SET {column} = ? WHERE frame = ?", (packed, frame)
-        )
+        connection.execute(f"UPDATE topologies SET {column} = ? WHERE frame = ?", (packed, frame))
 
 
 def map_of(shape: list[int], kind: str, content: bytes) -> dict[str, Any]:
@@ -312,7 +310,9 @@ PLANTS: dict[str, Plant] = {
     "choice impossible": fact(
         "options", "triangulate", "refine", "triangles", values=(-5, 0, 1, "40", None)
     ),
-    "area impossible": fact("options", "triangulate", "refine", "max_area", values=(8.0, -1.0, "x")),
+    "area impossible": fact(
+        "options", "triangulate", "refine", "max_area", values=(8.0, -1.0, "x")
+    ),
     "range impossible": fact("options", "frame_range", "first", values=(-1, 1, 99, "0", None, 0.5)),
     "range ends before": fact("options", "frame_range", "last", values=(-1, 0, 1, "3", 2.0)),
     "step impossible": fact("options", "frame_range", "step", values=(0, -1, 2, "1", None)),

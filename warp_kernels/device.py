@@ -191,7 +191,7 @@ class Device:
         """Copy host values into the beginning of a device array."""
         if self.is_cuda:
             with WARP:
-                source = wp.array(values, dtype=array.dtype, device="cpu")
+                source: wp.array = wp.array(values, dtype=array.dtype, device="cpu")
                 wp.copy(array, source, count=source.size)
                 self.synchronize()  # the host values may be gone before the copy is done
         else:

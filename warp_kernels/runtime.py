@@ -98,9 +98,7 @@ def driver_version() -> tuple[int, int] | None:
     return None
 
 
-def driver_problem(
-    installed: tuple[int, int] | None, needed: tuple[int, int] | None
-) -> str:
+def driver_problem(installed: tuple[int, int] | None, needed: tuple[int, int] | None) -> str:
     """Why no CUDA device is found although there is a driver, for a message; else nothing.
 
     Args:

@@ -9,8 +9,6 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
-import numpy as np
-
 from pipeline.track.blobs import unpack
 from pipeline.track.header import Header, read_header
 from pipeline.track.schema import ENDING, MAGIC, MOST_TRIANGLES, open_existing, reading
