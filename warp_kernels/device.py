@@ -21,7 +21,7 @@ import numpy as np
 import warp as wp
 
 from warp_kernels.meet import STRIDE, address_of_sleep, meet
-from warp_kernels.runtime import WARP, find_device, quiet
+from warp_kernels.runtime import WARP, find_device, quiet, unused_card
 
 SMALLEST_PART = 16
 """Below this many elements a second thread costs more than it saves."""
@@ -108,6 +108,8 @@ class Device:
         self.warp = find_device(name)
         self.name = str(self.warp.alias)
         self.is_cuda = bool(self.warp.is_cuda)
+        self.notes = unused_card() if name == "auto" and not self.is_cuda else ()
+        """Choices that were made, one sentence each."""
         self.part_count = 1 if self.is_cuda else max(1, threads or os.cpu_count() or 1)
         self._is_closed = False
         self._team = self._new_team()

@@ -50,10 +50,23 @@ def find_device(name: str) -> Any:
             return wp.get_device(name)
         except Exception as error:  # Warp raises several types for an unknown device
             found = ", ".join(device.alias for device in wp.get_devices())
-            reason = driver_problem(driver_version(), wp.get_cuda_toolkit_version())
+            reason = driver_problem(driver_version(), toolkit_version())
             raise OptionError(
                 f"--device {name}: no such device{reason}; use one of: auto, {found}"
             ) from error
+
+
+def unused_card() -> tuple[str, ...]:
+    """A sentence if CUDA is there and cannot be used, for who asked for no device in particular."""
+    problem = driver_problem(driver_version(), toolkit_version())
+    return (f"the CPU is used{problem}",) if problem else ()
+
+
+def toolkit_version() -> tuple[int, int] | None:
+    """Version of CUDA that this build of Warp was made with, or None without CUDA."""
+    with WARP:
+        found: tuple[int, int] | None = wp.get_cuda_toolkit_version()
+    return found
 
 
 def _start() -> None:
