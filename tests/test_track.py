@@ -3,6 +3,7 @@
 import json
 import shutil
 import sqlite3
+import tracemalloc
 from contextlib import closing
 from dataclasses import replace
 from fractions import Fraction
@@ -24,6 +25,7 @@ from stages.layouts.importance import Importance
 from stages.media import FrameRange
 from stages.validate import assert_valid
 from tests import media_samples as samples
+from tests.bad_tracks import bomb
 from tests.tracks import COUNT, QUICK, QUICK_FLAGS, solve_to, write_clip
 from warp_kernels.styles import STYLES
 
@@ -69,6 +71,17 @@ def test_blobs_keep_every_bit(kind: str, shape: tuple, rng: np.random.Generator)
     for bad in (blob[:-1], b"", pack(np.zeros(99), "<f8")):
         with pytest.raises(ValueError, match=r"bytes|rror"):
             unpack(bad, kind, shape)
+
+
+def test_blobs_are_no_larger_than_they_are_said_to_be() -> None:
+    """A hundred kilobytes that would become a hundred megabytes are not unpacked."""
+    packed = bomb(100)
+    tracemalloc.start()
+    with pytest.raises(ValueError, match="instead of 24"):
+        unpack(packed, "<f8", (3,))
+    _, most = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert most < 1 << 20
 
 
 def test_jobs_survive_as_plain_values() -> None:
@@ -160,6 +173,25 @@ def test_info_tells_what_a_track_is(track: Path, clip: Path, capsys) -> None:
     assert facts["source"]["size"] == clip.stat().st_size
     assert facts["finished"]
     assert [row["frame"] for row in facts["frames"]] == list(range(COUNT))
+
+
+def test_a_stranger_commands_no_terminal(copy: Path, capsys) -> None:
+    """What a track says is printed without control characters, in descriptions and in errors."""
+    spoil(copy, "UPDATE header SET value = '\"\\u001b[31m9\"' WHERE key = 'program'")
+    assert main(["info", str(copy)]) == 0
+    assert "by trimotion ?[31m9" in capsys.readouterr().out
+    spoil(copy, "UPDATE header SET value = '\"\\u001b[31m9\"' WHERE key = 'model'")
+    assert "\x1b" not in failure(capsys, "info", copy)[1]
+
+
+@pytest.mark.parametrize("name", ["x" * 5000, "a##/b##.png", "con/\u202e.mp4", "/", ""])
+def test_source_of_any_name(name: str, copy: Path, tmp_path: Path) -> None:
+    """Where the source was is a stranger's text, too: what needs no source is drawn without."""
+    with closing(sqlite3.connect(copy, isolation_level=None)) as connection:
+        (text,) = connection.execute("SELECT value FROM header WHERE key = 'source'").fetchone()
+        text = json.dumps({**json.loads(text), "path": name})
+        connection.execute("UPDATE header SET value = ? WHERE key = 'source'", (text,))
+    assert main(["render", str(copy), "-o", str(tmp_path / "a.mp4"), "--frames", "0-1", "-q"]) == 0
 
 
 def write_stills(folder: Path, pictures: list[np.ndarray]) -> Path:
