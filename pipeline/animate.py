@@ -132,7 +132,7 @@ def render(job: Job, track: TrackReader, info: MediaInfo, progress: Progress) ->
     rows = rows_around(track.rows, shown, job)
     tally = _Tally(progress, len(shown))
     drawing = Drawing(job, info, device)
-    with drawing, Behind(drawing.draw, SOLVED_BEHIND) as writer:
+    with device, drawing, Behind(drawing.draw, SOLVED_BEHIND) as writer:
         fitted, sources = _fitted(track, rows, job, device), source_pictures(job, rows)
         shares = followed_shares(job, track, rows)
         for snapshot, row, source, share in zip(fitted, rows, sources, shares, strict=True):
@@ -140,7 +140,7 @@ def render(job: Job, track: TrackReader, info: MediaInfo, progress: Progress) ->
             writer.put(Take(snapshot, row.shot, is_shown, source, share))
             if is_shown:
                 tally.add(row.triangle_count, snapshot.rmse)
-    return tally.result(begun, (), drawing.notes)
+    return tally.result(begun, (), [*device.notes, *drawing.notes])
 
 
 def _convert(job: Job, progress: Progress, *, draws: bool) -> Animated:
@@ -159,7 +159,7 @@ def _convert(job: Job, progress: Progress, *, draws: bool) -> Animated:
         tally = _Tally(progress, _expected(job, info.frame_count))
         notes = [] if past is None else past.notes
         found = _open_steps(decoder, weights, job, past, notes)
-        with open_track(job, info, past) as track:
+        with device, open_track(job, info, past) as track:
             writer = Behind(_Writer(track, drawing), SOLVED_BEHIND)
             with drawing or nullcontext(), closing(found), writer:
                 if past is not None:
@@ -171,7 +171,8 @@ def _convert(job: Job, progress: Progress, *, draws: bool) -> Animated:
                 track.finish()
     made = [] if drawing is None else drawing.notes
     warnings = (*decoder.warnings, *weights.warnings)
-    return tally.result(begun, warnings, [*decoder.notes, *weights.notes, *notes, *made])
+    told = [*device.notes, *decoder.notes, *weights.notes]
+    return tally.result(begun, warnings, [*told, *notes, *made])
 
 
 def _triangulator(job: Job, info: MediaInfo, device: Device) -> Triangulator:

@@ -22,11 +22,12 @@ def describe(path: Path, *, as_json: bool) -> str:
 
     Raises:
         MediaError: If it cannot be read.
-        TrackError: If it is a damaged track.
+        TrackError: If it is a damaged track; all of its frames are looked at.
         OptionError: If a pattern has more than one number field.
     """
     if is_track(path):
         with TrackReader(path) as track:
+            track.check()
             return json.dumps(_facts(track), indent=2) if as_json else _aligned(_track_rows(track))
     info = probe(path)
     return json.dumps(info.as_dict(), indent=2) if as_json else _aligned(_rows(info))
@@ -34,7 +35,12 @@ def describe(path: Path, *, as_json: bool) -> str:
 
 def _aligned(rows: list[tuple[str, str]]) -> str:
     width = max(len(label) for label, _ in rows)
-    return "\n".join(f"{label:<{width}}  {value}" for label, value in rows)
+    return "\n".join(f"{label:<{width}}  {_printable(value)}" for label, value in rows)
+
+
+def _printable(text: str) -> str:
+    """A stranger's text without what could command a terminal."""
+    return "".join(letter if letter.isprintable() else "?" for letter in text)
 
 
 def _facts(track: TrackReader) -> dict[str, object]:

@@ -226,9 +226,24 @@ class _Reporter(Progress):
 
     def frame(self, done: int, total: int | None, triangles: int, rmse: float) -> None:
         """Tell that a frame is finished."""
-        if os.getppid() != self._parent:
-            raise KeyboardInterrupt
+        _watch(self._parent)
         self._reports.put(("frame", triangles, rmse))
+
+
+def _watch(parent: int) -> None:
+    """End if the first process is gone: nobody would tell, nor want what is made."""
+    if os.getppid() != parent:
+        raise KeyboardInterrupt
+
+
+def _next_task(tasks: Any, parent: int) -> tuple[FrameRange, Path]:
+    """Wait for a range and the track that it is solved to."""
+    while True:
+        try:
+            task: tuple[FrameRange, Path] = tasks.get(timeout=PATIENCE)
+            return task
+        except Empty:
+            _watch(parent)
 
 
 def _work(job: Job, tasks: Any, reports: Any, parent: int) -> None:
@@ -236,7 +251,7 @@ def _work(job: Job, tasks: Any, reports: Any, parent: int) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C goes to all; the first process ends all
     try:
         while True:
-            wanted, path = tasks.get()
+            wanted, path = _next_task(tasks, parent)
             part = replace(job, frame_range=wanted, track=path, output=path, resume=True)
             done = solve(part, _Reporter(reports, parent))
             reports.put(("part", done.notes, done.warnings))

@@ -15,7 +15,8 @@ from pipeline.track.schema import ENDING
 from stages.media import FrameRange, MediaInfo
 from stages.media.commit import output_error
 from stages.snapshot import Snapshot
-from warp_kernels.errors import OptionError, OutputError
+from stages.validate import InvalidMeshError, assert_valid
+from warp_kernels.errors import OptionError, OutputError, TrackError
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,7 +64,21 @@ def past_of(job: Job) -> Past | None:
         if last is None:
             return None
         _check_range(job.track, job.frame_range, header.frame_range, last.frame)
-        return Past(header, Reached(last.frame, last.shot), reader.snapshot(last.frame))
+        reader.check()
+        return Past(header, Reached(last.frame, last.shot), _ground(reader, last.frame))
+
+
+def _ground(reader: TrackReader, frame: int) -> Snapshot:
+    """The frame on which the next one builds: edits take all for granted that a mesh must obey."""
+    snapshot = reader.snapshot(frame)
+    try:
+        assert_valid(snapshot.mesh)
+    except InvalidMeshError as error:
+        raise TrackError(
+            f"{reader.path}: frame {frame} is damaged ({error}); take a copy of the track, or "
+            "solve again"
+        ) from error
+    return snapshot
 
 
 def open_track(
@@ -111,8 +126,11 @@ def check_track_place(path: Path, job: Job) -> None:
 
     Raises:
         OptionError: If its name does not end as tracks do.
+        TrackError: If it is to be resumed and is a folder.
         OutputError: If it exists and is neither to be resumed nor replaced, or cannot be written.
     """
+    if job.resume and path.is_dir():
+        raise TrackError(f"{path}: is a folder; give the name of a track")
     check_track_name(path)
     if path.exists() and not (job.resume or job.encode.overwrite):
         raise OutputError(path, "exists already", "choose another name, --resume or --overwrite")

@@ -2,12 +2,16 @@
 
 A new option is carried along without a change here: its type and, for a member of a registry,
 the registry that its field names decide how it is read. Nothing that a file says is imported,
-called or unpickled: classes come from the annotations and registries of the program itself.
+called or unpickled: classes come from the annotations and registries of the program itself, every
+value is of the annotated type, and an array is not unpacked beyond the shape that it declares.
 """
 
 import base64
 import dataclasses
 import importlib
+import math
+import re
+import reprlib
 import types
 import typing
 import zlib
@@ -20,6 +24,15 @@ import numpy as np
 
 CLASS = "class"
 """Key under which a dataclass's name is kept."""
+GONE: frozenset[str] = frozenset()
+"""Fields that earlier versions wrote and this one does not know any more: they are passed over."""
+MOST_BYTES = 1 << 30
+"""Largest array [bytes]: a grey picture of as many pixels as any source may have."""
+_FRACTION = re.compile(r"-?\d{1,30}(/\d{1,30})?")
+
+
+class UnknownNameError(ValueError):
+    """A class or a field that this program does not have: another version wrote it."""
 
 
 def to_plain(value: Any) -> Any:
@@ -39,25 +52,39 @@ def to_plain(value: Any) -> Any:
     return str(value) if isinstance(value, Path | Fraction) else value
 
 
-def from_plain(cls: type, plain: Mapping[str, Any]) -> Any:
+def from_plain(cls: type, plain: Any, *, arrays: bool = True) -> Any:
     """Make a dataclass from what `to_plain` made of it.
 
-    Fields that are missing take their defaults, keys that are unknown are left out: an option
-    may have come or gone since.
+    Fields that are missing take their defaults: an option may have come since.
 
     Args:
         cls: The dataclass.
         plain: Its plain values.
+        arrays: Whether arrays are unpacked; else they are checked and become None.
 
     Raises:
-        ValueError, TypeError or KeyError: If the values are of other kinds.
+        UnknownNameError: If a class or a field is not one of this program.
+        ValueError: If a value is of another kind than its field.
+        TypeError: If a field without a default is missing.
     """
+    if not isinstance(plain, Mapping):
+        raise ValueError(f"{cls.__name__}: {reprlib.repr(plain)} stands for no such thing")
+    if plain.get(CLASS, cls.__name__) != cls.__name__:
+        raise UnknownNameError(f"the class {reprlib.repr(plain[CLASS])} for {cls.__name__}")
+    fields = {field.name: field for field in _fields(cls)}
+    for name in plain:
+        if name not in fields and name != CLASS and name not in GONE:
+            raise UnknownNameError(f"the field {reprlib.repr(name)} of {cls.__name__}")
     hints = typing.get_type_hints(cls)
-    values = {
-        field.name: _value(hints[field.name], plain[field.name], field.metadata.get("registry"))
-        for field in _fields(cls)
-        if field.name in plain
-    }
+    values = {}
+    for name in fields.keys() & plain.keys():
+        registry = fields[name].metadata.get("registry")
+        try:
+            values[name] = _value(hints[name], plain[name], registry, arrays)
+        except UnknownNameError:
+            raise
+        except (ValueError, OverflowError, ZeroDivisionError) as error:
+            raise ValueError(f"{name}: {error}") from error
     return cls(**values)
 
 
@@ -65,27 +92,75 @@ def _fields(cls: Any) -> list[dataclasses.Field[Any]]:
     return [field for field in dataclasses.fields(cls) if field.init]
 
 
-def _value(hint: Any, plain: Any, registry: str | None) -> Any:
+def _value(hint: Any, plain: Any, registry: str | None, arrays: bool) -> Any:
     """A value of an annotated type."""
-    if plain is None:
-        return None
     if isinstance(hint, types.UnionType):
+        if plain is None:
+            return None
         hint = next(part for part in typing.get_args(hint) if part is not types.NoneType)
     if typing.get_origin(hint) is tuple:
-        kinds = typing.get_args(hint)
-        return tuple(_value(kinds[0], entry, registry) for entry in plain)
+        return _several(typing.get_args(hint), plain, registry, arrays)
     if registry is not None:
-        return from_plain(_member(registry, plain[CLASS]), plain)
+        return from_plain(_member(registry, plain), plain, arrays=arrays)
     if dataclasses.is_dataclass(hint):
-        return from_plain(hint, plain)  # type: ignore[arg-type]
+        return from_plain(hint, plain, arrays=arrays)  # type: ignore[arg-type]
     if hint is np.ndarray:
-        content = zlib.decompress(base64.b64decode(plain["data"]))
-        return np.frombuffer(content, dtype=plain["dtype"]).reshape(plain["shape"])
-    return hint(plain) if hint in (Path, Fraction, float, int) else plain
+        return _array(plain, unpacked=arrays)
+    return _single(hint, plain)
 
 
-def _member(registry: str, name: str) -> type:
-    """The class of a registry that has a name."""
+def _several(kinds: tuple[Any, ...], plain: Any, registry: str | None, arrays: bool) -> Any:
+    """A tuple: of any length if its kinds end in an ellipsis."""
+    is_open = kinds[-1] is Ellipsis
+    if not isinstance(plain, list) or not (is_open or len(plain) == len(kinds)):
+        raise ValueError(f"{reprlib.repr(plain)} is not such a list")
+    each = kinds[:1] * len(plain) if is_open else kinds
+    found = zip(each, plain, strict=True)
+    return tuple(_value(kind, entry, registry, arrays) for kind, entry in found)
+
+
+def _single(hint: Any, plain: Any) -> Any:
+    """A truth, a number, a text, a path or a fraction; JSON tells truths from numbers."""
+    written: Any = {bool: bool, int: int, float: (int, float)}.get(hint, str)
+    if not isinstance(plain, written) or (isinstance(plain, bool) and hint is not bool):
+        raise ValueError(f"{reprlib.repr(plain)} instead of {hint.__name__}")
+    if hint is float and not math.isfinite(plain):
+        raise ValueError(f"{plain} is no number")
+    if isinstance(plain, str) and "\0" in plain:
+        raise ValueError(f"{reprlib.repr(plain)} holds a character of no text")
+    if hint is Fraction and not _FRACTION.fullmatch(plain):
+        raise ValueError(f"{reprlib.repr(plain)} is no fraction")
+    return hint(plain)
+
+
+def _array(plain: Any, *, unpacked: bool) -> np.ndarray | None:
+    """An array of numbers, no larger than its shape allows."""
+    if not isinstance(plain, Mapping) or plain.keys() != {"dtype", "shape", "data"}:
+        raise ValueError(f"{reprlib.repr(plain)} is no array")
+    kind, shape, data = plain["dtype"], plain["shape"], plain["data"]
+    if not isinstance(kind, str) or not re.fullmatch(r"[<>|]?[fiub][1248]", kind):
+        raise ValueError(f"an array of {reprlib.repr(kind)}")
+    sides: list[Any] = shape if isinstance(shape, list) and len(shape) <= 4 else [None]
+    if not all(type(side) is int and side >= 0 for side in sides):
+        raise ValueError(f"an array of shape {reprlib.repr(shape)}")
+    size = math.prod(sides) * np.dtype(kind).itemsize
+    if size > MOST_BYTES or not isinstance(data, str):
+        raise ValueError(f"an array of {size} bytes; {MOST_BYTES} are the most")
+    if not unpacked:
+        return None
+    try:
+        content = zlib.decompressobj().decompress(base64.b64decode(data), size + 1)
+    except zlib.error as error:
+        raise ValueError(str(error)) from error
+    return np.frombuffer(content, dtype=kind).reshape(sides)
+
+
+def _member(registry: str, plain: Any) -> type:
+    """The class of a registry that plain values name."""
+    name = plain.get(CLASS) if isinstance(plain, Mapping) else plain
     module, _, table = registry.partition(":")
-    members = getattr(importlib.import_module(module), table).values()
-    return next(member for member in members if member.__name__ == name)
+    for member in getattr(importlib.import_module(module), table).values():
+        if member.__name__ == name:
+            found: type = member
+            return found
+    raise UnknownNameError(f"the class {reprlib.repr(name)} in {table}")

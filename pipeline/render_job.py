@@ -100,10 +100,10 @@ def _find(named: Path | None, track: TrackReader, needed: str) -> tuple[Path | N
         return named, ""
     path = Path(header.source.path)
     try:
-        if not path.is_file() and input_pattern(path) is None:
+        if not _is_there(path):
             raise MediaError(path, "the source is not there", "say with --source where it is")
         header.source.check(path)
-    except (MediaError, TrackError) as error:
+    except (MediaError, OptionError, TrackError) as error:
         if needed:
             reason = str(error).removeprefix(f"{path}: ")
             raise MediaError(
@@ -113,3 +113,11 @@ def _find(named: Path | None, track: TrackReader, needed: str) -> tuple[Path | N
             ) from error
         return None, str(error).split(";")[0]
     return path, ""
+
+
+def _is_there(path: Path) -> bool:
+    """Whether there is a file of a name that somebody else chose, or stills."""
+    try:
+        return path.is_file() or input_pattern(path) is not None
+    except OSError:  # a name that is too long
+        return False

@@ -63,10 +63,10 @@ def draw_sheet(
     check_output(output, probe(source), (WIDTH, WIDTH), EncodeOptions(overwrite=overwrite), ONE)
     with open_decoder(source) as decoder:
         frame = next(decoder)
-    device = Device("auto")
-    snapshot = _triangulated(frame, device, triangles)
     stacks = [stack for name in STYLES for stack in STYLES[name].portraits or (name,)]
-    cells = [_drawn(stack.split(OVER), snapshot, frame, device) for stack in stacks]
+    with Device("auto") as device:
+        snapshot = _triangulated(frame, device, triangles)
+        cells = [_drawn(stack.split(OVER), snapshot, frame, device) for stack in stacks]
     sheet = sheet_of(cells, stacks, COLUMNS)
     size = (sheet.shape[1], sheet.shape[0])
     options = EncodeOptions(overwrite=overwrite, audio=False)

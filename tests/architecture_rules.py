@@ -40,6 +40,20 @@ ALLOCATORS = frozenset(
 TYPE_KEYWORDS = frozenset({"dtype", "ndim"})
 """`wp.array` with these alone is a type, not memory."""
 
+WARP_HOMES = frozenset({"warp_kernels/device.py", "warp_kernels/runtime.py"})
+"""The only files that call Warp while the program runs."""
+WARP_CALLS = ALLOCATORS | {
+    *("launch", "launch_tiled", "copy", "init", "synchronize", "synchronize_device"),
+    *("capture_begin", "capture_end", "capture_launch", "ScopedCapture", "ScopedStream"),
+    *("get_device", "get_devices", "get_cuda_device_count", "load_module", "force_load"),
+}
+"""Names of `wp` that work on a device, or on the list of them."""
+ARRAY_CALLS = frozenset({"numpy", "assign", "zero_", "fill_"})
+"""Methods of Warp's arrays that copy or launch."""
+UNLOCKED = frozenset({"replay", "_seen_by_host"})
+"""Functions of those files that need no lock of their own: the first runs on a team's threads, for
+the caller who holds it and waits for them; the second looks at the host's memory."""
+
 FORBIDDEN_STEMS = frozenset({"utils", "util", "helpers", "helper", "manager", "common", "misc"})
 MAX_FILE_LINES = 400
 MAX_LINE_LENGTH = 100
@@ -161,6 +175,36 @@ def memory_is_allocated_in_one_place(module: Module) -> Iterator[Finding]:
                 yield node.lineno, f"wp.{_warp_name(node.func)} outside the workspace"
 
 
+def warp_is_called_under_its_lock(module: Module) -> Iterator[Finding]:
+    """Only the device calls Warp, and holds `WARP` while it does; kernels are Warp's language."""
+    if module.package not in LEVELS:
+        return
+    exempt: set[int] = set()
+    for function in module.functions():
+        is_kernel = _is_kernel(function) or _has_decorator(function, "func")
+        if is_kernel or (module.path in WARP_HOMES and function.name in UNLOCKED):
+            exempt |= {id(node) for node in ast.walk(function)}
+    for node in ast.walk(module.tree) if module.path in WARP_HOMES else ():
+        if isinstance(node, ast.With):
+            for position, item in enumerate(node.items):
+                if ast.unparse(item.context_expr) == "WARP":
+                    for held in (*node.items[position + 1 :], *node.body):
+                        exempt |= {id(inner) for inner in ast.walk(held)}
+    for node in ast.walk(module.tree):
+        if isinstance(node, ast.Call) and id(node) not in exempt and _calls_warp(node):
+            yield node.lineno, f"{ast.unparse(node.func)} without the lock WARP of the device"
+
+
+def kernels_of_their_own_module_are_exact(module: Module) -> Iterator[Finding]:
+    """A kernel of a module of its own says how it is compiled: its file's options are not its."""
+    for kernel in filter(_is_kernel, module.functions()):
+        for decorator in kernel.decorator_list:
+            keywords = decorator.keywords if isinstance(decorator, ast.Call) else []
+            names = {keyword.arg for keyword in keywords}
+            if "module" in names and "module_options" not in names:
+                yield kernel.lineno, f"{kernel.name} has no module_options; give it EXACT"
+
+
 def modules_have_docstrings(module: Module) -> Iterator[Finding]:
     """Every file that holds something starts with what it is for."""
     if module.source.strip() and not ast.get_docstring(module.tree):
@@ -220,6 +264,8 @@ RULES: tuple[Callable[[Module], Iterator[Finding]], ...] = (
     kernel_files_keep_annotations,
     kernel_outputs_come_last,
     memory_is_allocated_in_one_place,
+    warp_is_called_under_its_lock,
+    kernels_of_their_own_module_are_exact,
     modules_have_docstrings,
     public_names_have_docstrings,
     functions_are_short,
@@ -270,6 +316,18 @@ def _warp_name(called: ast.expr) -> str:
     """Give `launch` for `wp.launch` and `warp.launch`, and nothing for what is not Warp's."""
     owner, _, name = ast.unparse(called).rpartition(".")
     return name if owner in {"wp", "warp"} else ""
+
+
+def _calls_warp(call: ast.Call) -> bool:
+    """Say whether a call launches, copies, allocates or captures, or asks for devices."""
+    if _warp_name(call.func) in WARP_CALLS:
+        return (
+            bool(call.args)
+            or not {k.arg for k in call.keywords} <= TYPE_KEYWORDS
+            or (not call.keywords)
+        )
+    name = call.func.attr if isinstance(call.func, ast.Attribute) else ""
+    return name in ARRAY_CALLS and not _warp_name(call.func)
 
 
 def _written_arrays(kernel: FunctionNode) -> Iterator[Finding]:

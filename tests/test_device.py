@@ -1,7 +1,13 @@
 """The team of threads: equal results, no waiting for ever, and a device that survives mistakes."""
 
+import gc
+import os
+import subprocess
+import sys
+import threading
 from collections.abc import Callable
 from threading import Thread
+from time import sleep
 
 import numpy as np
 import pytest
@@ -10,7 +16,8 @@ import warp as wp
 from stages.optimize import load_mesh, place_mesh
 from tests.kernel_samples import noise, poisoned_workspace, random_mesh, waves
 from warp_kernels.color_model import COLOR_MODELS, CONSTANT, LINEAR, ColorModel
-from warp_kernels.device import Device, Phase, Team
+from warp_kernels.device import PART, Device, Phase, Team
+from warp_kernels.runtime import driver_problem
 from warp_kernels.workspace import Workspace
 
 Replay = Callable[[Team, int], None]
@@ -201,6 +208,101 @@ def test_leaving_edges_at_rest_alone_changes_no_bit(model: ColorModel, device: s
         thorough.device.write(thorough._moved, everyone)
     assert resting > 5 * mesh.vertex_count
     np.testing.assert_array_equal(skipping.energies(), thorough.energies())
+
+
+def parts_alive() -> int:
+    """Threads of teams."""
+    return sum(thread.name == PART for thread in threading.enumerate())
+
+
+def parts_fall_to(number: int) -> bool:
+    """Whether so many threads of teams are left after a while."""
+    for _ in range(100):
+        if parts_alive() <= number:
+            break
+        sleep(0.05)
+    return parts_alive() <= number
+
+
+def test_threads_end_with_their_device(device: str) -> None:
+    """Closed, left, or dropped after use, and also after an interrupt left its first team behind;
+    what was computed can still be read."""
+    gc.collect()
+    before = parts_alive()
+    with Device(device, 8) as runner:
+        phase, visits = counting(runner, 700)
+        phase.resize(700)
+        runner.run([phase], 2)
+    runner.close()  # again
+    assert parts_alive() == before
+    assert (runner.read(visits, 700) == 2).all()
+    with pytest.raises(RuntimeError, match="was closed"):
+        runner.run([phase])
+    for _ in range(5):
+        dropped = Device(device, 8)
+        phase, _ = counting(dropped, 700)
+        dropped.run([phase])
+    del dropped, phase
+    gc.collect()
+    assert parts_fall_to(before)
+
+
+def test_interrupted_teams_end(device: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The threads that an interrupt left waiting do not wait for ever."""
+    before = parts_alive()
+    with Device(device, 4) as runner:
+        phase, _ = counting(runner, 500)
+        phase.resize(500)
+        with monkeypatch.context() as patched:
+            patched.setattr(Team, "_capture", interrupt)
+            for _ in range(3):
+                with pytest.raises(KeyboardInterrupt):
+                    runner.run([phase])
+    assert parts_fall_to(before)
+
+
+PROCESS = """
+import os, sys
+import warp as wp
+level, before = wp.config.log_level, dict(os.environ)
+stream = os.fstat(2)
+from warp_kernels.device import Device
+with Device("cpu", 2) as device:
+    array = device.empty(3, int)
+    device.clear(array)
+assert wp.config.log_level == level, wp.config.log_level
+assert dict(os.environ) == before
+assert os.path.samestat(os.fstat(2), stream)
+if "closed" in sys.argv:
+    os.close(2)
+    sys.stderr = None
+    Device("cpu", 2)
+"""
+
+
+@pytest.mark.parametrize("streams", ["open", "closed"])
+def test_nothing_of_the_process_stays_changed(streams: str) -> None:
+    """Neither Warp's level of messages nor the environment nor where errors go; not a word."""
+    ended = subprocess.run(
+        [sys.executable, "-c", PROCESS, streams],
+        capture_output=True,
+        text=True,
+        timeout=60,
+        env={**os.environ, "PYTHONPATH": os.getcwd()},
+    )
+    assert (ended.returncode, ended.stdout, ended.stderr) == (0, "", "")
+
+
+def test_old_drivers_are_named() -> None:
+    """Where CUDA is not found for want of a newer driver the message says so; else nothing."""
+    text = driver_problem((12, 4), (13, 4))
+    assert "knows CUDA 12.4" in text
+    assert "needs 13.0" in text
+    assert [driver_problem(*v) for v in ((None, (13, 4)), ((13, 0), (13, 4)), ((9, 0), None))] == [
+        "",
+        "",
+        "",
+    ]
 
 
 def _interrupted_for_the_caller(replay: Replay) -> Replay:

@@ -1,7 +1,11 @@
 """Ranges are exact: killed, resumed, split or solved side by side, a track has the same bits."""
 
+import os
+import signal
 import subprocess
 import sys
+import time
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -200,6 +204,57 @@ def test_two_processes_are_one(clip: Path, whole: Path, tmp_path: Path) -> None:
     assert solve_in_parts(job, Progress()).frames == COUNT
     assert rows_of(track) == rows_of(whole)
     assert list(tmp_path.iterdir()) == [track]
+
+
+def children_of(process: int) -> set[int]:
+    """Processes that a process has started and that live."""
+    found = Path(f"/proc/{process}/task/{process}/children")
+    return {int(number) for number in found.read_text().split()}
+
+
+def is_alive(process: int) -> bool:
+    """Whether a process is still there, and more than a name."""
+    try:
+        return ") Z " not in Path(f"/proc/{process}/stat").read_text()
+    except OSError:
+        return False
+
+
+def wait_for(condition: Callable[[], object], seconds: float) -> bool:
+    """Wait for a condition to hold."""
+    end = time.monotonic() + seconds
+    while not condition() and time.monotonic() < end:
+        time.sleep(0.1)
+    return bool(condition())
+
+
+@pytest.mark.skipif(not Path("/proc/self/task").is_dir(), reason="no list of processes")
+def test_processes_end_with_the_first(tmp_path: Path) -> None:
+    """The first one is killed, which no process can tell others: they notice, at work and idle.
+
+    One shot is long, the other is done soon, so that a process waits for its next task.
+    """
+    pictures = [samples.picture(96, 64, number) for number in range(150)]
+    clip = samples.write_video(tmp_path / "in.mp4", [*pictures, *(255 - pictures[0],) * 2])
+    track = tmp_path / "t.mtrk"
+    command = [sys.executable, "-m", "pipeline.cli", "solve", clip, "-o", track, "--jobs", "2"]
+    command += [*QUICK_FLAGS, "--frame-iterations", "48", "--threads", "1", "--progress", "none"]
+    first = subprocess.Popen([*map(str, command)], cwd=ROOT)
+    parts = track.with_name("t.mtrk.parts")
+    try:
+        assert wait_for(lambda: len(list(parts.glob("*.mtrk"))) == 2, 60)
+        others = children_of(first.pid)
+    finally:
+        first.kill()
+        first.wait()
+    assert len(others) >= 2
+    ended = wait_for(lambda: not any(map(is_alive, others)), 20)
+    for process in filter(is_alive, others):
+        os.kill(process, signal.SIGKILL)
+    assert ended
+    (longer,) = parts.glob("0-*.mtrk")
+    with TrackReader(longer) as reader:
+        assert len(reader.rows) < len(pictures)
 
 
 def test_processes_have_one_progress(clip: Path, tmp_path: Path) -> None:

@@ -3,11 +3,13 @@
 import json
 import shutil
 import sqlite3
+import tracemalloc
 from contextlib import closing
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
+import cv2
 import numpy as np
 import pytest
 
@@ -22,6 +24,8 @@ from stages.flows import FLOWS
 from stages.layouts.importance import Importance
 from stages.media import FrameRange
 from stages.validate import assert_valid
+from tests import media_samples as samples
+from tests.bad_tracks import bomb
 from tests.tracks import COUNT, QUICK, QUICK_FLAGS, solve_to, write_clip
 from warp_kernels.styles import STYLES
 
@@ -67,6 +71,17 @@ def test_blobs_keep_every_bit(kind: str, shape: tuple, rng: np.random.Generator)
     for bad in (blob[:-1], b"", pack(np.zeros(99), "<f8")):
         with pytest.raises(ValueError, match=r"bytes|rror"):
             unpack(bad, kind, shape)
+
+
+def test_blobs_are_no_larger_than_they_are_said_to_be() -> None:
+    """A hundred kilobytes that would become a hundred megabytes are not unpacked."""
+    packed = bomb(100)
+    tracemalloc.start()
+    with pytest.raises(ValueError, match="instead of 24"):
+        unpack(packed, "<f8", (3,))
+    _, most = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert most < 1 << 20
 
 
 def test_jobs_survive_as_plain_values() -> None:
@@ -158,6 +173,56 @@ def test_info_tells_what_a_track_is(track: Path, clip: Path, capsys) -> None:
     assert facts["source"]["size"] == clip.stat().st_size
     assert facts["finished"]
     assert [row["frame"] for row in facts["frames"]] == list(range(COUNT))
+
+
+def test_a_stranger_commands_no_terminal(copy: Path, capsys) -> None:
+    """What a track says is printed without control characters, in descriptions and in errors."""
+    spoil(copy, "UPDATE header SET value = '\"\\u001b[31m9\"' WHERE key = 'program'")
+    assert main(["info", str(copy)]) == 0
+    assert "by trimotion ?[31m9" in capsys.readouterr().out
+    spoil(copy, "UPDATE header SET value = '\"\\u001b[31m9\"' WHERE key = 'model'")
+    assert "\x1b" not in failure(capsys, "info", copy)[1]
+
+
+@pytest.mark.parametrize("name", ["x" * 5000, "a##/b##.png", "con/\u202e.mp4", "/", ""])
+def test_source_of_any_name(name: str, copy: Path, tmp_path: Path) -> None:
+    """Where the source was is a stranger's text, too: what needs no source is drawn without."""
+    with closing(sqlite3.connect(copy, isolation_level=None)) as connection:
+        (text,) = connection.execute("SELECT value FROM header WHERE key = 'source'").fetchone()
+        text = json.dumps({**json.loads(text), "path": name})
+        connection.execute("UPDATE header SET value = ? WHERE key = 'source'", (text,))
+    assert main(["render", str(copy), "-o", str(tmp_path / "a.mp4"), "--frames", "0-1", "-q"]) == 0
+
+
+def write_stills(folder: Path, pictures: list[np.ndarray]) -> Path:
+    """Numbered stills, to the bit."""
+    folder.mkdir()
+    for number, pixels in enumerate(pictures):
+        cv2.imwrite(str(folder / f"f_{number:02d}.png"), pixels[..., ::-1])
+    return folder / "f_##.png"
+
+
+def test_same_picture_keeps_its_mesh(tmp_path: Path) -> None:
+    """What is drawn for every other frame moves with every other frame alone.
+
+    A mesh is not at rest after the few iterations of a frame: solved again, it would change. Where
+    the map of weights changes the picture is another one.
+    """
+    pictures = [samples.picture(96, 64, number // 2) for number in range(6)]
+    clip = write_stills(tmp_path / "clip", pictures)
+    greys = [np.full((64, 96, 3), 50 + 40 * (number % 2), np.uint8) for number in range(6)]
+    for number, grey in enumerate(greys):
+        grey[: 10 * number + 5] = 255
+    weights = str(write_stills(tmp_path / "weights", greys))
+    for name, options, keeps in (("a", {}, True), ("b", {"weights": weights}, False)):
+        track = tmp_path / f"{name}.mtrk"
+        solve_to(track, clip, **options)
+        with TrackReader(track) as reader:
+            meshes = [reader.snapshot(number).mesh for number in range(6)]
+        for number in range(1, 6):
+            before, after = meshes[number - 1], meshes[number]
+            same = np.array_equal(before.vertices, after.vertices)
+            assert same == (keeps and number % 2 == 1)
 
 
 def test_stills_have_tracks(tmp_path: Path, clip: Path) -> None:

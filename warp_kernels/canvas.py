@@ -66,6 +66,7 @@ class Canvas:
         self._band = max(1, min(height, BAND_SAMPLES // (columns * self.samples)))
         # a row more than there is: the last pixel's samples are read together with one that is not
         self._triangle_of = device.empty((self._band * self.samples + 1, columns), int)
+        device.clear(self._triangle_of)  # where a mesh has holes, what stood there is looked up
         self._points = device.empty((self._band, LIST), int)
         is_opaque = any(coat.is_opaque for coat in self._coats)
         self._pixels = device.empty((height, width, 3 if is_opaque else 4), wp.uint8)
@@ -99,7 +100,11 @@ class Canvas:
         texels, levels, ranges = pack(textures)
         self._steady["texels"] = self._filled(texels, wp.uint8)
         self._steady["levels"] = self._filled(levels, int)
-        packed = np.zeros(max(1, len(styles)), dtype=StyleParameters.numpy_dtype())
+        # rows of named numbers, as Warp says
+        packed: Any = np.zeros(
+            max(1, len(styles)),
+            dtype=StyleParameters.numpy_dtype(),  # type: ignore[attr-defined]
+        )
         packed["row"] = np.arange(len(packed))
         for kind in ("is_masked", "is_followed"):
             own = [row for row, coat in enumerate(self._coats) if getattr(coat, kind)]
@@ -177,7 +182,7 @@ class Canvas:
         """Hand over colours, and shapes if they are looked at."""
         write, tables = self.device.write, self._tables
         write(tables["colors"], paint.colors)
-        if self._followed:
+        if self._followed and paint.shares is not None:
             write(tables["shares"], paint.shares)
         write(self._curved, np.array([0 if paint.curvatures is None else 1]))
         if paint.curvatures is not None:

@@ -10,27 +10,27 @@ in device memory: a graph outlives changes of the mesh as long as no part outgro
 """
 
 import os
-import sys
+import weakref
 from collections.abc import Callable, Sequence
 from functools import partial
-from threading import Lock, RLock, Thread
+from threading import Lock, Thread
+from types import TracebackType
 from typing import Any
 
 import numpy as np
 import warp as wp
 
-from warp_kernels.errors import OptionError
 from warp_kernels.meet import STRIDE, address_of_sleep, meet
+from warp_kernels.runtime import WARP, find_device, quiet, unused_card
 
 SMALLEST_PART = 16
 """Below this many elements a second thread costs more than it saves."""
+PART = "trimotion-part"
+"""Name of the threads."""
 MOST_GRAPHS = 64
 """Captured sequences kept: a much larger mesh needs a new one."""
 STEPS_PER_OCTAVE = 8
 """Launch sizes between a power of two and the next: a part that grows a little keeps its size."""
-
-WARP = RLock()
-"""Held by whoever uses Warp: its CPU capture records the launches of every thread."""
 
 
 class Phase:
@@ -92,7 +92,9 @@ class Phase:
 
 
 class Device:
-    """A device and the threads that feed it.
+    """A device and the threads that feed it; a context manager.
+
+    Its threads end with `close`, or with the last reference to it. Arrays outlive it.
 
     Args:
         name: "auto" (CUDA if present), "cpu", or "cuda:N".
@@ -103,14 +105,22 @@ class Device:
     """
 
     def __init__(self, name: str = "auto", threads: int = 0) -> None:
-        _start_warp()
-        if name == "auto":
-            name = "cuda:0" if wp.get_cuda_device_count() else "cpu"
-        self.name = name
-        self.warp = _warp_device(name)
+        self.warp = find_device(name)
+        self.name = str(self.warp.alias)
         self.is_cuda = bool(self.warp.is_cuda)
+        self.notes = unused_card() if name == "auto" and not self.is_cuda else ()
+        """Choices that were made, one sentence each."""
         self.part_count = 1 if self.is_cuda else max(1, threads or os.cpu_count() or 1)
-        self._team = Team(self.warp, self.part_count)
+        self._is_closed = False
+        self._team = self._new_team()
+
+    def _new_team(self) -> "Team":
+        """Threads that end when nobody refers to the device any more."""
+        with WARP:
+            team = Team(self.warp, self.part_count)
+        # at exit threads that wait are no burden, and one that works must not lose its team
+        weakref.finalize(self, team.dismiss).atexit = False
+        return team
 
     def record(
         self,
@@ -123,7 +133,7 @@ class Device:
         flows_on: bool = False,
     ) -> Phase:
         """Record the launch of `kernel`, split over the threads; see `Phase`, also for its size."""
-        with WARP:
+        with WARP, quiet():  # compiles the kernel if it is new
             spans = [wp.zeros(1, dtype=wp.vec2i, device=self.warp) for _ in range(self.part_count)]
             parts = [
                 wp.launch(
@@ -135,9 +145,10 @@ class Device:
 
     def _span_writer(self, spans: Sequence[wp.array]) -> Callable[[int, int, int], None]:
         """A function that writes a part's range; on the CPU straight into its memory."""
+        # no reference to the device: the team's graphs keep phases, and would keep it for ever
         if self.is_cuda:
-            return lambda number, begin, end: spans[number].assign([[begin, end]])
-        views = [span.numpy()[0] for span in spans]
+            return partial(_write_span, spans)
+        views = [_seen_by_host(span)[0] for span in spans]
 
         def write(number: int, begin: int, end: int) -> None:
             """Write the range of one part."""
@@ -151,16 +162,21 @@ class Device:
         Args:
             phases: What to run.
             times: How often; may be 0.
+
+        Raises:
+            RuntimeError: If the device was closed.
         """
         if times == 0:
             return
         with WARP:
+            if self._is_closed:
+                raise RuntimeError(f"{self!r} was closed; make another one")
             try:
                 self._team.run(phases, times)
             except BaseException:
                 # an interrupt has left the team out of step: the next caller needs a new one
                 self._team.abandon()
-                self._team = Team(self.warp, self.part_count)
+                self._team = self._new_team()
                 raise
 
     def empty(self, shape: Any, dtype: Any) -> wp.array:
@@ -177,21 +193,43 @@ class Device:
         """Copy host values into the beginning of a device array."""
         if self.is_cuda:
             with WARP:
-                source = wp.array(values, dtype=array.dtype, device="cpu")
+                source: wp.array = wp.array(values, dtype=array.dtype, device="cpu")
                 wp.copy(array, source, count=source.size)
                 self.synchronize()  # the host values may be gone before the copy is done
         else:
-            array.numpy()[: len(values)] = values
+            _seen_by_host(array)[: len(values)] = values
 
     def read(self, array: wp.array, count: int) -> np.ndarray:
         """Copy the first `count` rows of a device array to the host."""
-        self.synchronize()
-        return array.numpy()[:count].copy()
+        if self.is_cuda:
+            with WARP:
+                self.synchronize()
+                return np.array(array.numpy()[:count])
+        return _seen_by_host(array)[:count].copy()
 
     def synchronize(self) -> None:
         """Wait until everything launched so far is done."""
         if self.is_cuda:
-            wp.synchronize_device(self.warp)
+            with WARP:
+                wp.synchronize_device(self.warp)
+
+    def close(self) -> None:
+        """End the threads, and wait for them; what runs is finished first."""
+        with WARP:
+            self._is_closed = True
+            self._team.dismiss()
+        self._team.join()
+
+    def __enter__(self) -> "Device":
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
 
     def __repr__(self) -> str:
         return f"Device({self.name!r}, threads={self.part_count})"
@@ -210,22 +248,26 @@ class Team:
         self._size = size
         self._graphs: dict[Any, Any] = {}
         self._job: tuple[list[Any], int] = ([], 0)
-        self._flags = wp.zeros((size + 1) * STRIDE, dtype=int, device=device)
         self._meetings: list[Any] = []
-        if size > 1:
-            pause = address_of_sleep()
-            self._meetings = [
-                wp.launch(
-                    meet, 1, [number, size, pause, self._flags], device=device, record_cmd=True
-                )
-                for number in range(size)
-            ]
+        pause = address_of_sleep()
+        with WARP, quiet():
+            self._flags = wp.zeros((size + 1) * STRIDE, dtype=int, device=device)
+            if size > 1:
+                self._meetings = [
+                    wp.launch(
+                        meet, 1, [number, size, pause, self._flags], device=device, record_cmd=True
+                    )
+                    for number in range(size)
+                ]
         self._abandoned = False
         self._busy = [Lock() for _ in range(size)]
         self._starts = [_closed_lock() for _ in range(size)]
-        for number in range(1, size):
-            work = partial(_replay_forever, self, number)
-            Thread(target=work, daemon=True, name="trimotion-part").start()
+        self._threads = [
+            Thread(target=partial(_replay_forever, self, number), daemon=True, name=PART)
+            for number in range(1, size)
+        ]
+        for thread in self._threads:
+            thread.start()
 
     def run(self, phases: Sequence[Phase], times: int) -> None:
         """Replay phases `times` times over, the parts of each phase at once."""
@@ -248,13 +290,29 @@ class Team:
         self._starts[number].acquire()
         return not self._abandoned
 
-    def abandon(self) -> None:
-        """Let nobody wait any more, and wait until nobody works: the team is not used again."""
+    def dismiss(self) -> None:
+        """Let the threads end that have nothing to do; the team is not used again.
+
+        Calls nothing of Warp: the interpreter may come here on any thread, at any moment.
+        """
         self._abandoned = True
-        self._flags.fill_(1)
+        for start in self._starts[1:]:
+            if start.locked():
+                start.release()
+
+    def abandon(self) -> None:
+        """Let nobody wait any more, and wait until nobody works; then threads end."""
+        self.dismiss()
+        with WARP:
+            self._flags.fill_(1)
         for busy in self._busy:
             busy.acquire()
             busy.release()
+
+    def join(self) -> None:
+        """Wait until the threads of a dismissed team have ended."""
+        for thread in self._threads:
+            thread.join()
 
     def _graphs_of(self, phases: Sequence[Phase]) -> list[Any]:
         key = tuple((id(phase), phase.shape) for phase in phases)
@@ -266,7 +324,7 @@ class Team:
         return self._graphs[key][0]
 
     def _capture(self, phases: Sequence[Phase], number: int) -> Any:
-        with wp.ScopedCapture(device=self._device) as capture:
+        with WARP, quiet(), wp.ScopedCapture(device=self._device) as capture:
             for phase in phases:
                 part = phase.parts[number]
                 if part.bounds.size > 0:
@@ -295,27 +353,14 @@ def _launch_size(needed: int) -> int:
     return -(-needed // step) * step
 
 
-def _start_warp() -> None:
-    """Start Warp without a word: a command's output is its own.
-
-    Its native part reports a missing CUDA driver on the error stream itself, whatever the log
-    level, so that stream is put aside meanwhile.
-    """
-    wp.config.log_level = wp.LOG_ERROR
-    sys.stderr.flush()
-    kept = os.dup(2)
-    try:
-        with open(os.devnull, "wb") as nowhere:
-            os.dup2(nowhere.fileno(), 2)
-        wp.init()
-    finally:
-        os.dup2(kept, 2)
-        os.close(kept)
+def _write_span(spans: Sequence[wp.array], number: int, begin: int, end: int) -> None:
+    """Write the range of one part into memory that the host does not see."""
+    with WARP:
+        spans[number].assign([[begin, end]])
 
 
-def _warp_device(name: str) -> Any:
-    try:
-        return wp.get_device(name)
-    except Exception as error:  # Warp raises several types for an unknown device
-        found = ", ".join(device.alias for device in wp.get_devices())
-        raise OptionError(f"--device {name}: no such device; use one of: auto, {found}") from error
+def _seen_by_host(array: wp.array) -> np.ndarray:
+    """Memory of an array on the CPU as it lies there: Warp copies nothing and knows nothing of it,
+    so that nobody need wait for another thread's launches."""
+    view: np.ndarray = array.numpy()
+    return view

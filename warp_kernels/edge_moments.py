@@ -12,6 +12,7 @@ from typing import Any
 import warp as wp
 
 from warp_kernels.device import Device, Phase
+from warp_kernels.exact import EXACT
 from warp_kernels.line_moments import line_moments
 from warp_kernels.moment_layout import MomentLayout, moment_types
 from warp_kernels.raster import to_fixed, walk_edge
@@ -21,8 +22,7 @@ from warp_kernels.walk_rows import row_walker
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 
 EDGE_OPTIONS = {
-    "enable_backward": False,
-    "fuse_fp": False,
+    **EXACT,
     "cpu_compiler_flags": "-march=native -mprefer-vector-width=512",
 }
 """The widest registers that there are: eight sums fill one."""

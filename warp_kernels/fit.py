@@ -13,6 +13,7 @@ import warp as wp
 
 from warp_kernels.color_model import SQUARE
 from warp_kernels.device import Device, Phase
+from warp_kernels.exact import EXACT
 from warp_kernels.moment_layout import MomentLayout, moment_types
 from warp_kernels.normal_equations import centring, factorising, shifts
 from warp_kernels.sides import side_sums
@@ -104,7 +105,7 @@ def _fit_kernel(layout: MomentLayout) -> Any:
     fit = fit_moments(layout)
     expansion = shifts(model.exponents)
 
-    @wp.kernel(enable_backward=False, module="unique")
+    @wp.kernel(module="unique", module_options=EXACT)
     def fit_colors(
         span: wp.array(dtype=wp.vec2i),
         # In:

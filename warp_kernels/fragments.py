@@ -9,6 +9,7 @@ from typing import Any
 import warp as wp
 
 from warp_kernels.device import Device, Phase
+from warp_kernels.exact import EXACT
 from warp_kernels.moment_layout import MomentLayout, moment_types
 from warp_kernels.moments import area_sums_of_pixel, color_sums_of_pixel
 from warp_kernels.raster import first_row_below, to_fixed, winding
@@ -25,7 +26,7 @@ def _fragment_kernel(layout: MomentLayout) -> Any:
     area_sums = area_sums_of_pixel(layout)
     wide = layout.wide
 
-    @wp.kernel(enable_backward=False, module="unique")
+    @wp.kernel(module="unique", module_options=EXACT)
     def sum_fragments(
         span: wp.array(dtype=wp.vec2i),
         # In:

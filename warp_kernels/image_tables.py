@@ -15,6 +15,7 @@ import warp as wp
 
 from warp_kernels.color_model import SQUARE
 from warp_kernels.device import Device, Phase
+from warp_kernels.exact import EXACT
 from warp_kernels.moment_layout import ENTRY, MomentLayout, moment_types
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
@@ -42,7 +43,7 @@ def table_entry(row: int, column: int, width: int, depth: int) -> int:
 def _narrow_table_kernel(layout: MomentLayout) -> Any:
     depth = layout.depth
 
-    @wp.kernel(enable_backward=False, module="unique")
+    @wp.kernel(module="unique", module_options=EXACT)
     def sum_row(
         span: wp.array(dtype=wp.vec2i),
         # In:
@@ -84,7 +85,7 @@ def _wide_table_kernel(layout: MomentLayout) -> Any:
     depth, degree, area_words = layout.depth, layout.model.degree, layout.area_words
     words_type = wp.types.vector(length=ENTRY * depth, dtype=integer)
 
-    @wp.kernel(enable_backward=False, module="unique")
+    @wp.kernel(module="unique", module_options=EXACT)
     def sum_row(
         span: wp.array(dtype=wp.vec2i),
         # In:

@@ -6,6 +6,7 @@ from typing import Any
 import warp as wp
 
 from warp_kernels.device import Device, Phase
+from warp_kernels.exact import EXACT
 from warp_kernels.scene import Numbers, Scene, StyleParameters
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
@@ -13,7 +14,7 @@ wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 
 @cache
 def _prepare_kernel(prepare: Any) -> Any:
-    @wp.kernel(enable_backward=False, module="unique")
+    @wp.kernel(module="unique", module_options=EXACT)
     def prepare_triangles(
         span: wp.array(dtype=wp.vec2i),
         # In:

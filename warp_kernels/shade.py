@@ -17,6 +17,7 @@ import warp as wp
 
 from warp_kernels.blend import Coat, stack_of
 from warp_kernels.device import Device, Phase
+from warp_kernels.exact import EXACT
 from warp_kernels.gbuffer import LEAST_ROWS
 from warp_kernels.layers import LayerTables
 from warp_kernels.points import (
@@ -36,8 +37,7 @@ from warp_kernels.see_through import see_through
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 
 SHADE_OPTIONS = {
-    "enable_backward": False,
-    "fuse_fp": False,
+    **EXACT,
     "cpu_compiler_flags": "-march=native -mprefer-vector-width=512 -mllvm=-inline-threshold=9000",
 }
 """The widest registers that there are, and one program of all functions that a stack is made of."""

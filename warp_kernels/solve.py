@@ -10,6 +10,7 @@ from typing import Any
 import warp as wp
 
 from warp_kernels.device import Device, Phase
+from warp_kernels.exact import EXACT
 from warp_kernels.fit import fit_moments
 from warp_kernels.moment_layout import MomentLayout, moment_types
 from warp_kernels.sides import side_sums
@@ -30,7 +31,7 @@ def _edge_energy_kernel(layout: MomentLayout) -> Any:
     side_color, side_area = side_sums(layout)
     fit = fit_moments(layout)
 
-    @wp.kernel(enable_backward=False, module="unique")
+    @wp.kernel(module="unique", module_options=EXACT)
     def solve_variants(
         span: wp.array(dtype=wp.vec2i),
         # In:
@@ -84,7 +85,7 @@ def _fragment_energy_kernel(layout: MomentLayout) -> Any:
     color_type, area_type = moment_types(layout).color, moment_types(layout).area
     fit = fit_moments(layout)
 
-    @wp.kernel(enable_backward=False, module="unique")
+    @wp.kernel(module="unique", module_options=EXACT)
     def solve_variants(
         span: wp.array(dtype=wp.vec2i),
         # In:

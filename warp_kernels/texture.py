@@ -117,6 +117,9 @@ def level_at(scene: Scene, table: wp.vec4i, image: int, at: wp.vec2f, repeats: b
     if repeats:
         column = _wrapped(column, columns)
         row = _wrapped(row, rows)
+    # whatever comes of a place that is no number, it is read from the image
+    column = wp.clamp(column, 0, columns - 1)
+    row = wp.clamp(row, 0, rows - 1)
     texel = (image * rows + row) * columns + column
     # one number of 32 bits for each point: bytes the processor fetches one by one
     fours = wp.array(ptr=scene.texels.ptr, shape=(scene.texels.shape[0] / 4,), dtype=int)
@@ -180,7 +183,7 @@ def texture_at(
             its neighbours.
     """
     last = wp.max(parameters.level_count - 1, 0)
-    level = wp.min(int(detail), wp.max(last - 1, 0))
+    level = wp.clamp(int(detail), 0, wp.max(last - 1, 0))
     part = detail - float(level)
     # both without a branch, also where one has no weight: many points are looked at together
     finer = level_of(scene, parameters.first_level + level)

@@ -8,6 +8,7 @@ import warp as wp
 
 from warp_kernels.descend import smallest_height
 from warp_kernels.device import Device, Phase
+from warp_kernels.exact import EXACT
 from warp_kernels.ground import ground_type
 from warp_kernels.moment_layout import MomentLayout
 from warp_kernels.triangle_energy import line_sums
@@ -57,7 +58,7 @@ def _flip_kernel(layout: MomentLayout) -> Any:
     ground_struct = ground_type(layout)
     along, known, energy = line_sums(layout)
 
-    @wp.kernel(enable_backward=False, module="unique")
+    @wp.kernel(module="unique", module_options=EXACT)
     def flip_gains(
         span: wp.array(dtype=wp.vec2i),
         # In:
@@ -98,7 +99,7 @@ def _collapse_kernel(layout: MomentLayout) -> Any:
     ground_struct = ground_type(layout)
     along, known, energy = line_sums(layout)
 
-    @wp.kernel(enable_backward=False, module="unique")
+    @wp.kernel(module="unique", module_options=EXACT)
     def collapse_costs(
         span: wp.array(dtype=wp.vec2i),
         # In:
@@ -143,7 +144,7 @@ def _split_kernel(layout: MomentLayout) -> Any:
     ground_struct = ground_type(layout)
     along, known, energy = line_sums(layout)
 
-    @wp.kernel(enable_backward=False, module="unique")
+    @wp.kernel(module="unique", module_options=EXACT)
     def split_gains(
         span: wp.array(dtype=wp.vec2i),
         # In:

@@ -1,6 +1,8 @@
 """Arrays as bytes: the same array, the same bytes, and back to the bit."""
 
+import math
 import zlib
+from typing import Any
 
 import numpy as np
 
@@ -20,11 +22,11 @@ def pack(array: np.ndarray, kind: str) -> bytes:
     return zlib.compress(planes.tobytes(), LEVEL)
 
 
-def unpack(blob: bytes, kind: str, shape: tuple[int, ...]) -> np.ndarray:
+def unpack(blob: Any, kind: str, shape: tuple[int, ...]) -> np.ndarray:
     """Unpack an array.
 
     Args:
-        blob: What `pack` gave.
+        blob: What `pack` gave, if the file was not tampered with.
         kind: Its type.
         shape: Its shape.
 
@@ -32,7 +34,9 @@ def unpack(blob: bytes, kind: str, shape: tuple[int, ...]) -> np.ndarray:
         ValueError: If the bytes are damaged or of another size.
     """
     item = np.dtype(kind).itemsize
-    size = int(np.prod(shape)) * item
+    size = math.prod(shape) * item
+    if not isinstance(blob, bytes):
+        raise ValueError(f"{type(blob).__name__} instead of bytes")
     machine = zlib.decompressobj()
     try:
         content = machine.decompress(blob, size + 1)  # never more than is expected

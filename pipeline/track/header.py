@@ -1,6 +1,7 @@
 """What a track says about how it was made."""
 
 import json
+import reprlib
 import sqlite3
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -9,13 +10,22 @@ from pathlib import Path
 from typing import Any
 
 from pipeline.job import Job
-from pipeline.plain_values import from_plain, to_plain
+from pipeline.plain_values import UnknownNameError, from_plain, to_plain
 from pipeline.shots import read_cuts
 from pipeline.track.identity import SourceIdentity, identity_of
 from pipeline.version import library_versions, program_version
 from stages.media import FrameRange, MediaInfo
 from warp_kernels.color_model import COLOR_MODELS, ColorModel
-from warp_kernels.errors import TrackError
+from warp_kernels.errors import OptionError, TrackError
+from warp_kernels.raster import MAX_SIDE
+
+KEYS = frozenset({"program", "libraries", "options", "source", "info", "model", "finished"})
+"""What a header holds."""
+MOST_VALUES = 250_000
+"""Values of a field, more than any list of cuts has: a text of a few megabytes could become
+gigabytes of small lists."""
+MOST_UNITS = 1 << 31
+"""FFmpeg's fractions are of smaller numbers."""
 
 
 @dataclass(frozen=True)
@@ -75,9 +85,10 @@ class Header:
 
     @cached_property
     def job(self) -> Job:
-        """The job again, without its list of cuts."""
+        """The job again, without its list of cuts and without pictures, which draw nothing."""
         listed = isinstance(self.options["cuts"], list)
-        job: Job = from_plain(Job, {**self.options, "cuts": "none"} if listed else self.options)
+        options = {**self.options, "cuts": "none"} if listed else self.options
+        job: Job = from_plain(Job, options, arrays=False)
         return job
 
     def with_range(self, frame_range: FrameRange) -> "Header":
@@ -115,24 +126,80 @@ def write_header(connection: sqlite3.Connection, header: Header) -> None:
 
 
 def read_header(path: Path, connection: sqlite3.Connection) -> Header:
-    """Read a header.
+    """Read a header, all of it: what it says is used without a second look.
 
     Raises:
-        TrackError: If it is incomplete.
+        TrackError: If it is incomplete, or says what cannot be.
     """
-    stored = dict(connection.execute("SELECT key, value FROM header").fetchall())
+    found = connection.execute("SELECT key, value FROM header LIMIT 99").fetchall()
     try:
-        rows = {key: json.loads(value) for key, value in stored.items()}
-        return Header(
-            program=rows["program"],
-            libraries=rows["libraries"],
-            options=rows["options"],
+        rows = {key: _loaded(value) for key, value in found}
+        unknown = rows.keys() - KEYS
+        if unknown:
+            raise UnknownNameError(f"the fact {reprlib.repr(min(map(str, unknown)))}")
+        header = Header(
+            program=_text(rows["program"]),
+            libraries={_text(k): _text(v) for k, v in dict(rows["libraries"]).items()},
+            options=dict(rows["options"]),
             source=from_plain(SourceIdentity, rows["source"]),
             info=from_plain(MediaInfo, rows["info"]),
-            model=COLOR_MODELS[rows["model"]],
+            model=COLOR_MODELS[_text(rows["model"])],
             finished=rows["finished"],
         )
-    except (KeyError, TypeError, ValueError) as error:
+        _check_info(header.info)
+        _check_options(header)
+    except UnknownNameError as error:
+        raise TrackError(
+            f"{path}: the track's header names {error}, which this program does not know; use the "
+            "version that made it, or solve again"
+        ) from error
+    except (AttributeError, KeyError, TypeError, ValueError, RecursionError, OptionError) as error:
         raise TrackError(
             f"{path}: the track's header is damaged ({error}); take a copy of it, or solve again"
         ) from error
+    return header
+
+
+def _loaded(text: Any) -> Any:
+    """A field of the header."""
+    text = _text(text)
+    if text.count(",") + text.count("[") + text.count("{") > MOST_VALUES:
+        raise ValueError(f"a field of more than {MOST_VALUES} values")
+    return json.loads(text, parse_constant=_refused)
+
+
+def _refused(name: str) -> None:
+    raise ValueError(f"{name} is no number")
+
+
+def _text(value: Any) -> str:
+    if not isinstance(value, str):
+        raise ValueError(f"{type(value).__name__} instead of text")
+    return value
+
+
+def _check_info(info: MediaInfo) -> None:
+    """Refuse what no source is like."""
+    if not 1 <= min(info.width, info.height) <= max(info.width, info.height) <= MAX_SIDE:
+        raise ValueError(f"a picture of {info.width}x{info.height}")
+    for name in ("sample_aspect", "time_base", "average_rate"):
+        value = getattr(info, name)
+        if value is not None and not 0 < value.numerator < MOST_UNITS > value.denominator:
+            raise ValueError(f"{name} {value}")
+    counts = (info.frame_count, info.audio_channels, info.audio_rate)
+    sizes = (info.coded_width, info.coded_height, *(n for n in counts if n is not None))
+    if not all(0 <= number < MOST_UNITS for number in sizes):
+        raise ValueError(f"numbers {sizes}")
+    if info.kind not in ("video", "image", "sequence") or info.rotation not in (0, 90, 180, 270):
+        raise ValueError(f"a {info.kind!r} turned by {info.rotation}")
+
+
+def _check_options(header: Header) -> None:
+    """Refuse options that no job has."""
+    cuts = header.options["cuts"]
+    listed = isinstance(cuts, list) and all(type(cut) is int and cut >= 0 for cut in cuts)
+    if not listed and cuts not in ("auto", "none"):
+        raise ValueError(f"cuts: {reprlib.repr(cuts)}")
+    if not isinstance(header.finished, bool):
+        raise ValueError(f"finished: {reprlib.repr(header.finished)}")
+    header.job.triangulate.refine.least_count(header.info.width, header.info.height)

@@ -36,6 +36,7 @@ def join(parts: Sequence[Path], output: Path, frame_range: FrameRange | None = N
         readers = [stack.enter_context(TrackReader(path)) for path in parts]
         for reader in readers:
             _check_finished(reader)
+            reader.check()
         readers.sort(key=lambda reader: reader.rows[0].frame)
         for reader in readers[1:]:
             _check_alike(readers[0], reader)

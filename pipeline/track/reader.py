@@ -1,5 +1,6 @@
 """Read a track: any frame at once."""
 
+import reprlib
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -12,13 +13,24 @@ import numpy as np
 
 from pipeline.track.blobs import unpack
 from pipeline.track.header import Header, read_header
-from pipeline.track.schema import ENDING, MAGIC, has_table, open_existing, reading
+from pipeline.track.schema import (
+    ENDING,
+    MAGIC,
+    MOST_TRIANGLES,
+    has_table,
+    open_existing,
+    reading,
+)
 from stages.blank import color_owners
 from stages.media import FrameRange
 from stages.mesh import Mesh
 from stages.snapshot import Snapshot
+from stages.validate import assert_finite, assert_sound
 from warp_kernels.color_model import CHANNELS
 from warp_kernels.errors import TrackError
+
+LAST = 1 << 53
+"""Beyond any number of a frame, of a vertex or of a time: what a double still holds exactly."""
 
 
 @dataclass(frozen=True)
@@ -59,10 +71,33 @@ class TrackReader:
 
     @cached_property
     def rows(self) -> tuple[FrameRow, ...]:
-        """All frames, in order."""
+        """All frames, in order.
+
+        Raises:
+            TrackError: If they are not frames of the track's range, shot after shot.
+        """
         columns = "frame, pts, shot, triangle_count, rmse"
         found = self._all(f"SELECT {columns} FROM frames ORDER BY frame")
-        return tuple(FrameRow(*row) for row in found)
+        rows = []
+        before = None
+        for values in found:
+            row = FrameRow(*values)
+            try:
+                _check_row(row, before, self.header)
+            except ValueError as error:
+                raise self._damaged(row.frame, error) from error
+            rows.append(row)
+            before = row
+        return tuple(rows)
+
+    def check(self) -> None:
+        """Read all frames, and keep none: whoever goes on with a track wants to know before.
+
+        Raises:
+            TrackError: If one is damaged.
+        """
+        for row in self.rows:
+            self.snapshot(row.frame)
 
     @property
     def shots(self) -> tuple[int, ...]:
@@ -71,9 +106,7 @@ class TrackReader:
 
     def last(self) -> FrameRow | None:
         """The last frame, or None if there is none."""
-        columns = "frame, pts, shot, triangle_count, rmse"
-        found = self._all(f"SELECT {columns} FROM frames ORDER BY frame DESC LIMIT 1")
-        return FrameRow(*found[0]) if found else None
+        return self.rows[-1] if self.rows else None
 
     def rows_in(self, wanted: FrameRange) -> list[FrameRow]:
         """The frames of a range.
@@ -98,7 +131,7 @@ class TrackReader:
             TrackError: If the track does not hold it, or is damaged.
         """
         found = self._all(
-            "SELECT pts, vertex_count, triangle_count, next_vertex_id, next_triangle_id,"
+            "SELECT pts, topology, vertex_count, triangle_count, next_vertex_id, next_triangle_id,"
             " vertices, coefficients, energies, counts, triangles, vertex_ids, triangle_ids"
             " FROM frames JOIN meshes USING (frame)"
             " JOIN topologies ON topologies.frame = frames.topology WHERE frames.frame = ?",
@@ -106,53 +139,56 @@ class TrackReader:
         )
         if not found:
             raise TrackError(f"{self.path}: holds no frame {frame}; see trimotion info {self.path}")
-        pts, V, T, next_vertex, next_triangle, *blobs = found[0]
+        pts, holder, V, T, *next_ids, vertices, coefficients, energies, counts = found[0][:10]
         try:
-            return self._assembled(frame, pts, V, T, (next_vertex, next_triangle), blobs)
+            _check_counts(pts, holder, V, T, *next_ids)
+            mesh = self._mesh(V, T, next_ids, vertices, found[0][10:])
+            model = self.header.model
+            covered = unpack(counts, "<i8", (T,))
+            colors = unpack(coefficients, "<f8", (T, CHANNELS, model.term_count))
+            snapshot = Snapshot(
+                frame_index=frame,
+                pts=pts,
+                time_base=Fraction(self.header.info.time_base),
+                mesh=mesh,
+                model=model,
+                coefficients=colors[color_owners(mesh, covered)],  # black in tracks of old programs
+                energies=unpack(energies, "<f8", (T,)),
+                counts=covered,
+                limits=self._limits(frame, T),
+            )
+            assert_finite(snapshot)
         except ValueError as error:
-            raise TrackError(
-                f"{self.path}: frame {frame} is damaged ({error}); take a copy of the track, or "
-                "solve again"
-            ) from error
+            raise self._damaged(frame, error) from error
+        return snapshot
 
     def snapshots(self, rows: list[FrameRow]) -> Iterator[Snapshot]:
         """What some frames became, one at a time."""
         for row in rows:
             yield self.snapshot(row.frame)
 
-    def _assembled(
-        self,
-        frame: int,
-        pts: int,
-        V: int,
-        T: int,
-        next_ids: tuple[int, int],
-        blobs: Sequence[bytes],
-    ) -> Snapshot:
-        vertices, coefficients, energies, counts, triangles, vertex_ids, triangle_ids = blobs
-        info, model = self.header.info, self.header.model
+    def _mesh(
+        self, V: int, T: int, next_ids: Sequence[int], vertices: Any, topology: Sequence[Any]
+    ) -> Mesh:
+        """The triangles of a frame, checked before more is unpacked."""
+        triangles, vertex_ids, triangle_ids = topology
         mesh = Mesh(
-            width=info.width,
-            height=info.height,
-            vertices=unpack(vertices, "<f8", (V, 2)),
-            triangles=_corners(unpack(triangles, "<i4", (T, 3)), V),
+            width=self.header.info.width,
+            height=self.header.info.height,
             vertex_ids=unpack(vertex_ids, "<i8", (V,)),
             triangle_ids=unpack(triangle_ids, "<i8", (T,)),
+            triangles=unpack(triangles, "<i4", (T, 3)),
+            vertices=unpack(vertices, "<f8", (V, 2)),
             next_vertex_id=next_ids[0],
             next_triangle_id=next_ids[1],
         )
-        covered = unpack(counts, "<i8", (T,))
-        colors = unpack(coefficients, "<f8", (T, CHANNELS, model.term_count))
-        return Snapshot(
-            frame_index=frame,
-            pts=pts,
-            time_base=Fraction(info.time_base),
-            mesh=mesh,
-            model=model,
-            coefficients=colors[color_owners(mesh, covered)],  # black in tracks of old programs
-            energies=unpack(energies, "<f8", (T,)),
-            counts=covered,
-            limits=self._limits(frame, T),
+        assert_sound(mesh)
+        return mesh
+
+    def _damaged(self, frame: object, error: Exception) -> TrackError:
+        return TrackError(
+            f"{self.path}: frame {reprlib.repr(frame)} is damaged ({error}); take a copy of the "
+            "track, or solve again"
         )
 
     def _limits(self, frame: int, T: int) -> np.ndarray | None:
@@ -192,14 +228,41 @@ def is_track(path: Path) -> bool:
     if path.suffix.lower() == ENDING:
         return True
     try:
+        if not path.is_file():  # who opens a pipe waits for its other end
+            return False
         with path.open("rb") as file:
             return file.read(len(MAGIC)) == MAGIC
-    except OSError:
+    except (OSError, ValueError):
         return False
 
 
-def _corners(triangles: np.ndarray, vertex_count: int) -> np.ndarray:
-    """Refuse numbers of vertices that there are not: kernels would read beyond their arrays."""
-    if triangles.size and not 0 <= triangles.min() <= triangles.max() < vertex_count:
-        raise ValueError("a triangle of unknown vertices")
-    return triangles
+def _check_row(row: FrameRow, before: FrameRow | None, header: Header) -> None:
+    """Refuse what SQLite may hold and no track does: it lets every column hold everything."""
+    wanted = header.frame_range
+    numbers = (row.frame, row.pts, row.shot, row.triangle_count)
+    if not all(type(number) is int for number in numbers) or type(row.rmse) is not float:
+        raise ValueError("numbers of other types")
+    if not (0 <= row.shot <= row.frame <= LAST and abs(row.pts) <= LAST and 0 <= row.rmse < 1e9):
+        raise ValueError("impossible numbers")
+    beyond = wanted.last is not None and row.frame > wanted.last
+    if row.frame < wanted.first or beyond or not wanted.is_in_step(row.frame):
+        raise ValueError(f"it is none of the frames {wanted}")
+    if header.info.kind == "video" and wanted.start_time is None:
+        expected = wanted.first if before is None else before.frame + wanted.step
+        if row.frame != expected:
+            raise ValueError(f"frame {expected} is missing before it")
+    if before is not None:
+        if row.pts <= before.pts:
+            raise ValueError("its time is not after that of the frame before")
+        if row.shot != before.shot and row.shot <= before.frame:
+            raise ValueError(f"its shot begins with frame {row.shot}, before an earlier one ends")
+
+
+def _check_counts(pts: Any, holder: Any, V: Any, T: Any, *next_ids: Any) -> None:
+    """Refuse numbers that are none, and sizes that no mesh has: so much memory is asked for."""
+    if not all(type(number) is int for number in (pts, holder, V, T, *next_ids)):
+        raise ValueError("numbers of other types")
+    if not (1 <= T <= MOST_TRIANGLES and 3 <= V <= T + 2):
+        raise ValueError(f"{V} vertices of {T} triangles")
+    if not all(0 < number <= LAST for number in next_ids):
+        raise ValueError("impossible numbers of vertices or triangles")

@@ -29,6 +29,10 @@ FORMAT = 1
 """Number of this form; another program reads a track only if it is the same."""
 ENDING = ".mtrk"
 """How the names of tracks end."""
+MOST_BYTES = 1 << 27
+"""Largest field that is read or written [bytes]: SQLite itself would take a gigabyte."""
+MOST_TRIANGLES = 1 << 20
+"""Most triangles of a frame: a stranger's file may not ask for more memory than they need."""
 WAIT = 10.0
 """How long to wait for another process that writes [s]."""
 
@@ -183,18 +187,22 @@ def _connect(path: Path, mode: str) -> sqlite3.Connection:
     # A rollback journal, not a write-ahead log: the latter needs memory that processes share,
     # which folders on a network do not have, and a second file beside the track.
     address = f"{path.absolute().as_uri()}?mode={mode}"
-    return sqlite3.connect(
+    connection = sqlite3.connect(
         address, uri=True, timeout=WAIT, isolation_level=None, check_same_thread=False
     )
+    connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, MOST_BYTES)
+    return connection
 
 
 def _check_file(path: Path) -> None:
     """Refuse what is no file of SQLite."""
     try:
+        if not (path.is_file() or path.is_dir() or not path.exists()):
+            raise TrackError(f"{path}: is not a regular file; give the name of a track")
         with path.open("rb") as file:
             head = file.read(100)
-    except OSError as error:
-        reason = str(error.strerror or error).lower()
+    except (OSError, ValueError) as error:
+        reason = str(getattr(error, "strerror", None) or error).lower()
         raise TrackError(f"{path}: cannot be read ({reason}); give the name of a track") from error
     if len(head) < 100 or not head.startswith(MAGIC):
         raise TrackError(f"{path}: is no mesh track; give a file that trimotion solve wrote")
@@ -227,4 +235,21 @@ def _check_form(path: Path, connection: sqlite3.Connection) -> None:
         raise TrackError(
             f"{path}: is a track of format {form}, and this program reads format {FORMAT}; "
             "use the version that made it, or solve again"
+        )
+    # Views, triggers and tables of other columns would be a stranger's program.
+    found = {
+        (kind, name): " ".join((sql or "").split())
+        for kind, name, sql in connection.execute("SELECT type, name, sql FROM sqlite_master")
+    }
+    for statement in filter(None, map(str.strip, SCHEMA.split(";"))):
+        name = statement.split()[2]
+        if found.pop(("table", name), None) != " ".join(statement.split()):
+            raise TrackError(
+                f"{path}: the track is damaged (its table {name} is missing or has another form); "
+                "take a copy of it, or solve again"
+            )
+    if found:
+        raise TrackError(
+            f"{path}: the track is damaged (it holds {', '.join(map(repr, sorted(found)[0]))}, "
+            "which no track does); take a copy of it, or solve again"
         )

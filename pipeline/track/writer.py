@@ -10,10 +10,18 @@ import numpy as np
 
 from pipeline.track.blobs import pack
 from pipeline.track.header import Header, write_header
-from pipeline.track.schema import LIMITS, create, open_existing, put_in_place, writing
+from pipeline.track.schema import (
+    LIMITS,
+    MOST_TRIANGLES,
+    create,
+    open_existing,
+    put_in_place,
+    writing,
+)
 from stages.media.commit import PendingFile
 from stages.mesh import Mesh
 from stages.snapshot import Snapshot
+from warp_kernels.errors import OutputError
 
 
 class TrackWriter:
@@ -87,6 +95,13 @@ class TrackWriter:
             OutputError: If it cannot be written.
         """
         mesh, frame = snapshot.mesh, snapshot.frame_index
+        if mesh.triangle_count > MOST_TRIANGLES:
+            raise OutputError(
+                self._path,
+                f"frame {frame} has {mesh.triangle_count} triangles, a track holds up to "
+                f"{MOST_TRIANGLES}",
+                "ask for fewer",
+            )
         brings = shot != self._shot or not _same_topology(self._topology, mesh)
         if brings:
             self._holder = frame

@@ -12,6 +12,9 @@ from stages.media.color import tag_bt709
 from stages.media.container import DAMAGE, reason_of
 from warp_kernels.errors import OptionError
 
+SVT_LOG = "SVT_LOG"
+"""Environment variable that says how much the AV1 encoder prints."""
+
 
 @dataclass(frozen=True)
 class EncodeOptions:
@@ -70,14 +73,28 @@ def set_up(
         clock: Seconds per unit of pts.
         threads: Encoder threads, 0 for one per core.
     """
-    if codec.name == "libsvtav1":
-        os.environ.setdefault("SVT_LOG", "1")  # it prints a banner otherwise
     codec.width, codec.height = size
     codec.pix_fmt = pixel_format
     codec.time_base = clock
     codec.thread_count = threads
     if pixel_format.startswith("yuv"):
         tag_bt709(codec)
+
+
+def open_quietly(codec: VideoCodecContext) -> None:
+    """Open an encoder that was set up; one of them prints a banner but for a variable.
+
+    Args:
+        codec: The encoder.
+    """
+    before = os.environ.get(SVT_LOG)
+    if codec.name == "libsvtav1" and before is None:
+        os.environ[SVT_LOG] = "1"
+    try:
+        codec.open()
+    finally:
+        if before is None:
+            os.environ.pop(SVT_LOG, None)
 
 
 def try_encoder(
@@ -100,7 +117,7 @@ def try_encoder(
     codec.framerate = Fraction(25)
     set_up(codec, pixel_format, size, Fraction(1, 25), options.threads)
     try:
-        codec.open()
+        open_quietly(codec)
     except DAMAGE as error:
         raise OptionError(
             f"{encoder.name} refuses {size[0]}x{size[1]} in {pixel_format} ({reason_of(error)}); "

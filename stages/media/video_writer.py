@@ -15,7 +15,7 @@ from stages.media.audio import AudioTrack, open_audio
 from stages.media.color import YuvWriter, over_paper
 from stages.media.commit import PendingFile, output_error
 from stages.media.container import DAMAGE
-from stages.media.encoder_setup import EncodeOptions, set_up, settings_of
+from stages.media.encoder_setup import EncodeOptions, open_quietly, set_up, settings_of
 from stages.media.frame_range import FrameRange
 from stages.media.info import MediaInfo
 from stages.media.output_plan import OutputPlan
@@ -170,6 +170,8 @@ class VideoWriter:
             codec.sample_aspect_ratio = stream.sample_aspect_ratio = self._aspect()
         if plan.encoder.tag and plan.container and plan.container.format in ("mp4", "mov"):
             codec.codec_tag = plan.encoder.tag
+        if plan.encoder.name == "libsvtav1":
+            open_quietly(codec)
         return stream
 
     def _aspect(self) -> Fraction:

@@ -31,12 +31,13 @@ class StepTimes:
 
     counts: tuple[int, ...] = (200, 500, 1000, 2000, 5000, 10000)
     samples: int = 5
+    colors: tuple[str, ...] = tuple(COLOR_MODELS)
 
     def run(self, study: Study) -> Section:
-        """Time every step with every number of triangles, in both colour models."""
+        """Time every step with every number of triangles, in the colour models."""
         pixels = reduced(study.pictures[study.first])
         rows, panels = [], []
-        for color in COLOR_MODELS:
+        for color in self.colors:
             times: dict[str, list[float]] = {step: [] for step in STEPS}
             for count in self.counts:
                 for step, value in self._times(study, pixels, color, count).items():
