@@ -8,6 +8,7 @@ from pathlib import Path
 
 import av
 
+from stages.media.audio_plan import AudioPlan, plan_audio
 from stages.media.codecs import CONTAINERS, Container, Encoder, find_encoder
 from stages.media.commit import output_error
 from stages.media.encoder_setup import EncodeOptions, try_encoder
@@ -35,8 +36,8 @@ class OutputPlan:
     """Width of the pictures that are handed over [px]."""
     height: int
     """Height of the pictures that are handed over [px]."""
-    audio: bool
-    """Whether the source's audio is carried over."""
+    audio: AudioPlan | None
+    """How the source's audio gets there; None without."""
     notes: tuple[str, ...]
     """Choices that were made, one sentence each."""
 
@@ -115,9 +116,13 @@ def _plan_video(
         )
     _check_quality(encoder, options)
     notes = []
-    audio = options.audio and source.audio_codec is not None and container.audio is not None
-    if options.audio and source.audio_codec is not None and container.audio is None:
-        notes.append(f"{ending} holds no sound: the audio is left out")
+    audio = None
+    if options.audio and source.audio_codec is not None:
+        if container.audio is None:
+            notes.append(f"{ending} holds no sound: the audio is left out")
+        else:
+            audio = plan_audio(source.path, container, options.audio_mode)
+            notes += audio.notes if audio else []
     if container.format == "gif" and source.sample_aspect != 1:
         notes.append(f"{ending} has square pixels only: the picture will look stretched")
     if container.format in ("matroska", "webm"):
@@ -171,7 +176,7 @@ def _plan_stills(
     notes = ["stills hold no sound: the audio is left out"] if source.audio_codec else []
     if not options.audio:
         notes = []
-    return OutputPlan(target, pattern, None, None, "", size[0], size[1], False, tuple(notes))
+    return OutputPlan(target, pattern, None, None, "", size[0], size[1], None, tuple(notes))
 
 
 def _check_holds(container: Container, encoder: Encoder, ending: str) -> None:

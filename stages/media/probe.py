@@ -6,9 +6,10 @@ from fractions import Fraction
 from pathlib import Path
 
 import av
-from av.audio.stream import AudioStream
 from av.video.frame import VideoFrame
 
+from stages.media.audio_plan import best_audio
+from stages.media.channels import channels_of
 from stages.media.color import read_color
 from stages.media.info import DEFAULT_MAX_PIXELS, MediaInfo
 from stages.media.naming import NumberedPattern, input_pattern
@@ -135,11 +136,12 @@ def _notes_on(frame: VideoFrame, hdr: str | None) -> list[str]:
 
 def _audio(source: VideoSource) -> tuple[str | None, int | None, int | None]:
     """Codec, channels and samples per second of the sound."""
-    stream = source.container.streams.best("audio")
-    if not isinstance(stream, AudioStream) or stream.codec_context is None:
+    stream = best_audio(source.container)
+    if stream is None:
         return None, None, None
     context = stream.codec_context
-    return context.codec.canonical_name, context.channels, context.sample_rate or None
+    channels = channels_of(context).count
+    return context.codec.canonical_name, channels, context.sample_rate or None
 
 
 def _duration(source: VideoSource) -> Fraction | None:

@@ -83,9 +83,12 @@ class VideoSource:
 
     @property
     def average_rate(self) -> Fraction | None:
-        """Frames per second as declared or guessed by FFmpeg; None if unknown."""
+        """Frames per second as declared or guessed by FFmpeg; None if unknown.
+
+        More than one frame per unit of the clock is a mistake in the file; encoders refuse it.
+        """
         for rate in (self.stream.average_rate, self.stream.guessed_rate):
-            if rate:
+            if rate and rate * self.time_base <= 1:
                 return Fraction(rate)
         return None
 

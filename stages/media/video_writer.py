@@ -140,9 +140,8 @@ class VideoWriter:
         self._palette = PaletteFilter() if pixel_format == "pal8" else None
         self._colors = YuvWriter("rgb24" if self._palette else pixel_format)
         self._start = time if self._shifted else Fraction(0)
-        if plan.audio:
-            path = self._source.path
-            self._audio = open_audio(path, self._output, plan.container, self.notes)
+        if plan.audio is not None:
+            self._audio = open_audio(self._source.path, self._output, plan.audio)
             if self._audio is not None:
                 self._audio.begin(time if self._shifted else None)
 
