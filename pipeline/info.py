@@ -106,8 +106,10 @@ def _rows(info: MediaInfo) -> list[tuple[str, str]]:
 
 def _size(info: MediaInfo) -> str:
     text = f"{info.width}x{info.height} pixels"
-    if info.rotation:
-        text += f" (stored {info.coded_width}x{info.coded_height}, turned by {info.rotation})"
+    shown = [f"turned by {info.rotation}"] if info.rotation else []
+    shown += ["mirrored"] if info.mirrored else []
+    if shown:
+        text += f" (stored {info.coded_width}x{info.coded_height}, {', '.join(shown)})"
     if info.sample_aspect != 1:
         text += f", pixel aspect {info.sample_aspect}"
     return text

@@ -58,6 +58,7 @@ def write_video(
     pixel_format: str = "yuv420p",
     matrix: str | None = None,
     rotation: int = 0,
+    way: tuple[int, int, int, int] | None = None,
     aspect: Fraction | None = None,
     options: dict[str, str] | None = None,
     sound: int = 0,
@@ -67,7 +68,8 @@ def write_video(
     """Write pictures as a video, one every 1/25 s unless `pts` says otherwise.
 
     `matrix` tags the colours (`bt709` or `bt601`); without it they are stored as BT.601 and
-    left untagged. `sound` is the number of seconds of a rising tone.
+    left untagged. `way` says that a stored point (x, y) is shown at (a x + c y, b x + d y).
+    `sound` is the number of seconds of a rising tone.
     """
     times = pts or [round(Fraction(n, 25) / time_base) for n in range(len(pictures))]
     muxer = {"video_track_timescale": str(time_base.denominator)}
@@ -83,6 +85,9 @@ def write_video(
             stream.codec_context.color_range = 1
         if rotation:
             stream.set_display_rotation(rotation)
+        if way is not None:
+            a, b, c, d = (value * 2**16 for value in way)
+            stream.set_display_matrix((a, b, 0, c, d, 0, 0, 0, 2**30))
         audio = output.add_stream(audio_codec, rate=48000) if sound else None
         for pixels, time in zip(pictures, times, strict=True):
             frame = av.VideoFrame.from_ndarray(pixels, format="rgb24").reformat(

@@ -76,56 +76,57 @@ def read_color(frame: VideoFrame) -> ColorReading:
 
 
 class RgbReader:
-    """Converts decoded frames to upright RGB of one size; keeps its converter between frames."""
+    """Converts decoded frames to RGB; keeps its converter between frames."""
 
-    def __init__(self, width: int, height: int, paper: int = WHITE) -> None:
+    def __init__(self, paper: int = WHITE) -> None:
         """Prepare for a source.
 
         Args:
-            width: Width of every result [px]; frames of another size are scaled to it.
-            height: Height of every result [px].
             paper: Grey that shows through transparent pixels [code value].
         """
         self.saw_transparency = False
         """Whether a frame had transparent pixels, through which the paper shows."""
         self._paper = paper
-        self._size = (width, height)
         self._reformatter = VideoReformatter()
 
-    def read8(self, frame: VideoFrame, color: ColorReading) -> np.ndarray:
+    def read8(self, frame: VideoFrame, color: ColorReading, size: tuple[int, int]) -> np.ndarray:
         """Convert to 8 bits.
 
         Args:
             frame: A decoded frame.
             color: How to understand it.
+            size: Width and height of the result [px]; a frame of another size is scaled.
 
         Returns:
             Code values, [H, W, 3] uint8.
         """
         if has_alpha(frame):
-            return self._over_paper(self._convert(frame, color, "rgba"))
-        pixels = self._convert(frame, color, "rgb24")
+            return self._over_paper(self._convert(frame, color, "rgba", size))
+        pixels = self._convert(frame, color, "rgb24", size)
         if not color.full_range and frame.format.name.startswith(("gray", "ya")):
             pixels = _EXPAND_GRAY[pixels]
         return pixels
 
-    def read16(self, frame: VideoFrame, color: ColorReading) -> np.ndarray:
+    def read16(self, frame: VideoFrame, color: ColorReading, size: tuple[int, int]) -> np.ndarray:
         """Convert to 16 bits, for tone mapping.
 
         Args:
             frame: A decoded frame.
             color: How to understand it.
+            size: Width and height of the result [px]; a frame of another size is scaled.
 
         Returns:
             Code values, [H, W, 3] uint16.
         """
-        return self._convert(frame, color, "rgb48le")
+        return self._convert(frame, color, "rgb48le", size)
 
-    def _convert(self, frame: VideoFrame, color: ColorReading, layout: str) -> np.ndarray:
+    def _convert(
+        self, frame: VideoFrame, color: ColorReading, layout: str, size: tuple[int, int]
+    ) -> np.ndarray:
         converted = self._reformatter.reformat(
             frame,
-            width=self._size[0],
-            height=self._size[1],
+            width=size[0],
+            height=size[1],
             format=layout,
             src_colorspace=color.colorspace,
             src_color_range=_FULL if color.full_range else _LIMITED,

@@ -18,7 +18,7 @@ from stages.media.frame_range import FrameRange
 from stages.media.hdr import tone_map
 from stages.media.info import DEFAULT_MAX_PIXELS, MediaInfo
 from stages.media.naming import NumberedPattern, input_pattern
-from stages.media.orientation import upright
+from stages.media.orientation import Orientation, orientation_of, upright
 from stages.media.probe import describe, describe_sequence
 from stages.media.sequence import existing_numbers, refuse_gaps, still_frames
 from stages.media.source import VideoSource
@@ -91,7 +91,7 @@ class Decoder:
         self._before, self._after = margin
         self._name = source_name
         self._paper = paper
-        self._reader = RgbReader(info.coded_width, info.coded_height, paper)
+        self._reader = RgbReader(paper)
         self._delivered = 0
         self._met = False
         self._iterator: Iterator[Frame] | None = None
@@ -124,18 +124,24 @@ class Decoder:
         raise NotImplementedError
 
     def _to_frame(self, index: int, pts: int, raw: VideoFrame) -> Frame:
-        if (raw.width, raw.height) != (self.info.coded_width, self.info.coded_height):
+        info, shown = self.info, self._orientation(raw)
+        size = (info.height, info.width) if shown.is_sideways else (info.width, info.height)
+        if (raw.width, raw.height) != size:
             self._note_once("picture size changes within the source: scaled to the first size")
         self._delivered += 1
-        return Frame(index, pts, self.info.time_base, self._pixels(raw))
+        return Frame(index, pts, info.time_base, upright(self._pixels(raw, size), shown))
 
-    def _pixels(self, raw: VideoFrame) -> np.ndarray:
+    def _orientation(self, raw: VideoFrame) -> Orientation:
+        """How a frame is shown; those of a video all as the first one."""
+        return self.info.orientation
+
+    def _pixels(self, raw: VideoFrame, size: tuple[int, int]) -> np.ndarray:
         color = read_color(raw)
         try:
             if color.hdr is not None:
-                pixels = tone_map(self._reader.read16(raw, color), color.hdr)
+                pixels = tone_map(self._reader.read16(raw, color, size), color.hdr)
             else:
-                pixels = self._reader.read8(raw, color)
+                pixels = self._reader.read8(raw, color, size)
         except DAMAGE as error:
             raise MediaError(
                 self._name,
@@ -145,7 +151,7 @@ class Decoder:
         if self._reader.saw_transparency:
             paper = {WHITE: "white", 0: "black"}.get(self._paper, f"grey {self._paper}")
             self._note_once(f"transparent parts are shown over {paper}")
-        return upright(pixels, self.info.rotation)
+        return pixels
 
     def _note_once(self, note: str) -> None:
         if note not in self.notes:
@@ -265,6 +271,10 @@ class _SequenceDecoder(Decoder):
         for number, raw in stills:
             yield self._to_frame(number, number - first, raw)
         self._refuse_nothing(f"stills {first} to {self._numbers[-1]}")
+
+    def _orientation(self, raw: VideoFrame) -> Orientation:
+        """How a still is shown: a camera may have been turned between two."""
+        return orientation_of(raw)
 
     def _given(self) -> list[int]:
         """Numbers of the range and of its margin."""

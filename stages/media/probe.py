@@ -13,7 +13,7 @@ from stages.media.channels import channels_of
 from stages.media.color import read_color
 from stages.media.info import DEFAULT_MAX_PIXELS, MediaInfo
 from stages.media.naming import NumberedPattern, input_pattern
-from stages.media.orientation import quarter_turns, sane_aspect
+from stages.media.orientation import orientation_of, sane_aspect
 from stages.media.sequence import existing_numbers
 from stages.media.source import VideoSource
 
@@ -60,12 +60,12 @@ def describe(source: VideoSource) -> MediaInfo:
     """
     frame = source.first_frame()
     color = read_color(frame)
-    rotation = quarter_turns(frame.rotation)
+    shown = orientation_of(frame)
     notes = [*source.notes, *color.notes, *_notes_on(frame, color.hdr)]
-    aspect = sane_aspect(source.stream.sample_aspect_ratio, rotation)
+    aspect = sane_aspect(source.stream.sample_aspect_ratio, shown)
     if aspect is None:
         notes.append(f"pixel aspect {source.stream.sample_aspect_ratio} ignored: taken as 1")
-    sideways = rotation in (90, 270)
+    sideways = shown.is_sideways
     picture = source.is_picture
     audio_codec, audio_channels, audio_rate = _audio(source)
     codec = source.stream.codec_context
@@ -79,7 +79,7 @@ def describe(source: VideoSource) -> MediaInfo:
         height=frame.width if sideways else frame.height,
         coded_width=frame.width,
         coded_height=frame.height,
-        rotation=rotation,
+        rotation=shown.rotation,
         sample_aspect=aspect or Fraction(1),
         time_base=source.time_base,
         average_rate=None if picture else source.average_rate,
@@ -93,6 +93,7 @@ def describe(source: VideoSource) -> MediaInfo:
         audio_channels=audio_channels,
         audio_rate=audio_rate,
         notes=tuple(notes),
+        mirrored=shown.mirrored,
     )
 
 
