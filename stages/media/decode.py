@@ -18,7 +18,7 @@ from stages.media.frame_range import FrameRange
 from stages.media.hdr import tone_map
 from stages.media.info import DEFAULT_MAX_PIXELS, MediaInfo
 from stages.media.naming import NumberedPattern, input_pattern
-from stages.media.orientation import Orientation, orientation_of, upright
+from stages.media.orientation import upright
 from stages.media.probe import describe, describe_sequence
 from stages.media.sequence import existing_numbers, refuse_gaps, still_frames
 from stages.media.source import VideoSource
@@ -92,6 +92,7 @@ class Decoder:
         self._name = source_name
         self._paper = paper
         self._reader = RgbReader(paper)
+        self._shown = info.orientation
         self._delivered = 0
         self._met = False
         self._iterator: Iterator[Frame] | None = None
@@ -124,16 +125,12 @@ class Decoder:
         raise NotImplementedError
 
     def _to_frame(self, index: int, pts: int, raw: VideoFrame) -> Frame:
-        info, shown = self.info, self._orientation(raw)
+        info, shown = self.info, self._shown
         size = (info.height, info.width) if shown.is_sideways else (info.width, info.height)
         if (raw.width, raw.height) != size:
             self._note_once("picture size changes within the source: scaled to the first size")
         self._delivered += 1
         return Frame(index, pts, info.time_base, upright(self._pixels(raw, size), shown))
-
-    def _orientation(self, raw: VideoFrame) -> Orientation:
-        """How a frame is shown; those of a video all as the first one."""
-        return self.info.orientation
 
     def _pixels(self, raw: VideoFrame, size: tuple[int, int]) -> np.ndarray:
         color = read_color(raw)
@@ -268,13 +265,10 @@ class _SequenceDecoder(Decoder):
         self._met = bool(numbers)
         first = self._numbers[0]
         stills = still_frames(self._pattern, numbers, self._max_pixels, self.warnings)
-        for number, raw in stills:
+        for number, source, raw in stills:
+            self._shown = source.orientation_of(raw)  # a camera may be turned between two
             yield self._to_frame(number, number - first, raw)
         self._refuse_nothing(f"stills {first} to {self._numbers[-1]}")
-
-    def _orientation(self, raw: VideoFrame) -> Orientation:
-        """How a still is shown: a camera may have been turned between two."""
-        return orientation_of(raw)
 
     def _given(self) -> list[int]:
         """Numbers of the range and of its margin."""

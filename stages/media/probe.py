@@ -13,7 +13,7 @@ from stages.media.channels import channels_of
 from stages.media.color import read_color
 from stages.media.info import DEFAULT_MAX_PIXELS, MediaInfo
 from stages.media.naming import NumberedPattern, input_pattern
-from stages.media.orientation import orientation_of, sane_aspect
+from stages.media.orientation import sane_aspect
 from stages.media.sequence import existing_numbers
 from stages.media.source import VideoSource
 
@@ -60,7 +60,7 @@ def describe(source: VideoSource) -> MediaInfo:
     """
     frame = source.first_frame()
     color = read_color(frame)
-    shown = orientation_of(frame)
+    shown = source.orientation_of(frame)
     notes = [*source.notes, *color.notes, *_notes_on(frame, color.hdr)]
     aspect = sane_aspect(source.stream.sample_aspect_ratio, shown)
     if aspect is None:
@@ -72,7 +72,7 @@ def describe(source: VideoSource) -> MediaInfo:
     return MediaInfo(
         path=source.path,
         kind="image" if picture else "video",
-        container=source.container.format.name,
+        container=source.format_name,
         codec=codec.codec.canonical_name,
         pixel_format=frame.format.name,
         width=frame.height if sideways else frame.width,

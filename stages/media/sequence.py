@@ -57,8 +57,8 @@ def refuse_gaps(pattern: NumberedPattern, numbers: list[int], wanted: FrameRange
 
 def still_frames(
     pattern: NumberedPattern, numbers: list[int], max_pixels: int, problems: list[str]
-) -> Iterator[tuple[int, VideoFrame]]:
-    """Decode stills one after the other.
+) -> Iterator[tuple[int, VideoSource, VideoFrame]]:
+    """Decode stills one after the other: their number, their opened file, their picture.
 
     Args:
         pattern: The stills' name.
@@ -69,6 +69,6 @@ def still_frames(
     for number in numbers:
         try:
             with VideoSource(pattern.path_for(number), max_pixels) as source:
-                yield number, source.first_frame()
+                yield number, source, source.first_frame()
         except MediaError as error:
             problems.append(f"left out: {error}")

@@ -16,7 +16,7 @@ def side_data(frame: VideoFrame, name: str) -> bytes | None:
     Returns:
         Its bytes, or None if the frame has none.
     """
-    every = frame.side_data
+    every: Any = frame.side_data
     pieces = (every[place] for place in range(len(every)))
     return next((bytes(piece) for piece in pieces if piece.type.name == name), None)
 

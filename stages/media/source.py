@@ -7,6 +7,7 @@ from types import TracebackType
 
 from av.video.frame import VideoFrame
 
+from stages.media.coded_photo import open_photo
 from stages.media.container import (
     DAMAGE,
     choose_video,
@@ -14,6 +15,8 @@ from stages.media.container import (
     open_container,
     reason_of,
 )
+from stages.media.orientation import Orientation, orientation_of
+from stages.media.picture_size import check_size
 from warp_kernels.errors import MediaError
 
 MAX_FAILURES = 10_000
@@ -51,7 +54,8 @@ class VideoSource:
     def _open(self) -> None:
         self.container = open_container(self.path, self._guard)
         try:
-            chosen = choose_video(self.container, self.path)
+            self._photo = open_photo(self.path, self.container, self._max_pixels)
+            chosen = self._photo or choose_video(self.container, self.path)
             self.stream = chosen.stream
             self.notes = chosen.notes
             codec = self.stream.codec_context
@@ -63,7 +67,7 @@ class VideoSource:
             self.container.close()
             raise
         self._ahead: VideoFrame | None = None
-        self._decoded = self._decode_all()
+        self._decoded = self._photo.frames() if self._photo else self._decode_all()
 
     def reopen(self) -> None:
         """Start again at the first frame."""
@@ -73,7 +77,20 @@ class VideoSource:
     @property
     def is_picture(self) -> bool:
         """Whether the file is a still picture."""
-        return is_picture(self.container)
+        return self._photo is not None or is_picture(self.container)
+
+    @property
+    def format_name(self) -> str:
+        """FFmpeg's name of the file format, or `heif`."""
+        return "heif" if self._photo else str(self.container.format.name)
+
+    def orientation_of(self, frame: VideoFrame) -> Orientation:
+        """How a frame of this file is to be shown.
+
+        Args:
+            frame: A decoded frame.
+        """
+        return self._photo.orientation if self._photo else orientation_of(frame)
 
     @property
     def time_base(self) -> Fraction:
@@ -175,24 +192,3 @@ class VideoSource:
     def _count(self, error: Exception) -> None:
         self.failures += 1
         self.reason = self.reason or reason_of(error)
-
-
-def check_size(path: Path, width: int, height: int, max_pixels: int) -> None:
-    """Refuse pictures that are too large, before memory is taken for them.
-
-    Args:
-        path: The file, for the message.
-        width: Declared width [px]; 0 if unknown.
-        height: Declared height [px]; 0 if unknown.
-        max_pixels: The limit [px].
-
-    Raises:
-        MediaError: If the picture exceeds the limit.
-    """
-    if width * height > max_pixels:
-        raise MediaError(
-            path,
-            f"{width}x{height} is {width * height / 1e6:.0f} million pixels, "
-            f"more than {max_pixels / 1e6:.0f} million",
-            "scale it down with another program first",
-        )
