@@ -7,6 +7,7 @@ from types import TracebackType
 
 from av.video.frame import VideoFrame
 
+from stages.media.alpha_decoder import alpha_decoder
 from stages.media.coded_photo import open_photo
 from stages.media.container import (
     DAMAGE,
@@ -63,6 +64,7 @@ class VideoSource:
             codec.options = {"max_pixels": str(self._guard)}
             self.stream.thread_type = "AUTO"
             self.stream.thread_count = self._threads
+            self._alpha_decoder = alpha_decoder(self.stream, self._guard, self._threads)
         except BaseException:
             self.container.close()
             raise
@@ -153,6 +155,8 @@ class VideoSource:
             av.FFmpegError: If the container cannot seek.
         """
         self.container.seek(pts, stream=self.stream, backward=True)
+        if self._alpha_decoder is not None:
+            self._alpha_decoder.flush_buffers()
         self._ahead = None
         self._decoded = self._decode_all()
 
@@ -179,7 +183,7 @@ class VideoSource:
                 packet = next(packets, None)
                 if packet is None:
                     return
-                frames = packet.decode()
+                frames = (self._alpha_decoder or self.stream).decode(packet)
             except EOFError:
                 return
             except DAMAGE as error:

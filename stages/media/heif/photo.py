@@ -17,6 +17,7 @@ BRANDS = frozenset({"heic", "heix", "heim", "heis", "mif1", "mif2", "avif", "mia
 
 _ALPHA = ("mpegB:cicp:systems:auxiliary:alpha", "hevc:2015:auxid:1")
 _MOST_TILES = 65536
+_AS_STORED = Orientation()
 
 
 @dataclass(frozen=True)
@@ -31,7 +32,7 @@ class Photo:
     """Width and height of what the tiles show, without padding [px]."""
     crop: tuple[int, int, int, int] | None = None
     """Left, top, width and height of what is shown of that [px]; None for all."""
-    orientation: Orientation = Orientation()
+    orientation: Orientation = _AS_STORED
     """How it is shown."""
     profile: bytes | None = None
     """Its ICC profile."""
