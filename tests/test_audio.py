@@ -172,3 +172,15 @@ def test_sound_that_changes_its_channels_goes_on(tmp_path: Path) -> None:
     convert(joined, tmp_path / "out.webm")
     times = [time for time, _ in samples.sound_packets(tmp_path / "out.webm")]
     assert Fraction(8, 10) < times[-1] < Fraction(11, 10)
+
+
+@pytest.mark.parametrize("ending", ["mp4", "mkv", "webm"])
+def test_sound_of_a_trimmed_clip_is_trimmed(tmp_path: Path, ending: str) -> None:
+    """What an edit list hides, a second at either end, is not carried into the output."""
+    pictures = [samples.picture(64, 48, n) for n in range(75)]
+    source = samples.write_video(tmp_path / "in.mp4", pictures, sound=3)
+    samples.trim(source, Fraction(1), Fraction(1))
+    convert(source, tmp_path / f"out.{ending}")
+    times = [float(time) for time, _ in samples.sound_packets(tmp_path / f"out.{ending}")]
+    assert times[0] >= -0.13
+    assert 0.9 < times[-1] < 1.1

@@ -9,7 +9,14 @@ import numpy as np
 import pytest
 
 from stages.frame import Frame
-from stages.media import EncodeOptions, FrameRange, open_decoder, open_encoder, probe
+from stages.media import (
+    EncodeOptions,
+    FrameRange,
+    count_frames,
+    open_decoder,
+    open_encoder,
+    probe,
+)
 from warp_kernels.errors import MediaError, OptionError
 
 
@@ -269,3 +276,27 @@ def test_our_own_transparent_webm_comes_back(tmp_path: Path) -> None:
             encoder.write(pixels, number, Fraction(1, 25))
     for frame in frames_of(path):
         assert (frame.pixels > 250).all()
+
+
+@pytest.mark.parametrize(("start", "seconds"), [(5, 20), (13, 12), (20, 50), (0, 7)])
+def test_trimmed_clips_have_what_a_player_shows(tmp_path: Path, start: int, seconds: int) -> None:
+    """Edit lists hide frames that the file declares; nothing breaks off, and no count is wrong."""
+    path = samples.write_video(tmp_path / "a.mp4", clip(50), options={"g": "10"})
+    whole = frames_of(path)
+    samples.trim(path, Fraction(start, 25), Fraction(seconds, 25))
+    shown = min(seconds, 50 - start)
+    with open_decoder(path) as decoder:
+        frames = list(decoder)
+        assert not decoder.warnings
+    assert (probe(path).frame_count, count_frames(path), len(frames)) == (shown,) * 3
+    assert np.array_equal(frames[-1].pixels, whole[start + shown - 1].pixels)
+
+
+def test_a_frame_of_a_trimmed_clip_is_reached_by_its_number(tmp_path: Path) -> None:
+    """Hidden frames do not count."""
+    path = samples.write_video(tmp_path / "a.mp4", clip(420), options={"g": "50"})
+    samples.trim(path, Fraction(30, 25), Fraction(380, 25))
+    expected = next(frame for frame in frames_of(path) if frame.index == 345)
+    (frame,) = frames_of(path, FrameRange(345, 345))
+    assert (frame.index, frame.pts) == (345, expected.pts)
+    assert np.array_equal(frame.pixels, expected.pixels)

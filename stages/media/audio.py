@@ -17,6 +17,8 @@ from stages.media.container import DAMAGE, open_container, reason_of
 
 _RESTART = Fraction(1, 2)
 """A clock that falls back by more than this has restarted [s]."""
+_PRIMING = Fraction(1, 8)
+"""Sound that a decoder needs before the first that is heard, at most [s]."""
 
 
 def open_audio(path: Path, output: OutputContainer, plan: AudioPlan) -> "AudioTrack | None":
@@ -167,10 +169,13 @@ class _CopiedTrack(AudioTrack):
     """Packets as they are."""
 
     _last_dts: Fraction | None = None
+    _heard = False
 
     def _handle(self, packet: Packet, time: Fraction | None) -> None:
         if time is None or (self._start is not None and time < self._start):
             return
+        if packet.is_discard and (self._heard or time < -_PRIMING):
+            return  # cut off by the file's edit list; a decoder needs the last ones before it
         base = Fraction(packet.time_base)
         shift = round((self._offset - (self._start or 0)) / base)
         pts = packet.dts if packet.pts is None else packet.pts
@@ -181,6 +186,7 @@ class _CopiedTrack(AudioTrack):
             self.problem = "audio packets that run backwards are left out"
             return
         self._last_dts = dts
+        self._heard = self._heard or not packet.is_discard
         packet.stream = self._target
         self._output.mux(packet)
 

@@ -25,7 +25,7 @@ def count_frames(path: str | Path) -> int:
         count = 0
         try:
             for packet in source.container.demux(source.stream):
-                count += packet.size > 0
+                count += packet.size > 0 and not packet.is_discard
         except DAMAGE:
             pass  # it breaks off here, as it does when it is decoded
         return count

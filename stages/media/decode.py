@@ -230,7 +230,7 @@ class _FileDecoder(Decoder):
             )
 
     def _breaks_off(self, count: int) -> bool:
-        declared, info = self._source.stream.frames, self.info
+        declared, info = self._source.declared_frames, self.info
         if declared and "mp4" in info.container:
             return count < declared
         if info.kind == "image" or info.duration is None or info.average_rate is None:

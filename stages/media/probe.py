@@ -160,8 +160,9 @@ def _duration(source: VideoSource) -> Fraction | None:
 
 
 def _frame_count(source: VideoSource) -> int | None:
-    if source.stream.frames > 0:
-        return int(source.stream.frames)
+    declared = source.declared_frames
+    if declared:
+        return declared
     duration, rate = _duration(source), source.average_rate
     if not duration or not rate:
         return None

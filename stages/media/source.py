@@ -101,6 +101,19 @@ class VideoSource:
         return Fraction(base) if base else Fraction(1, 90000)
 
     @property
+    def declared_frames(self) -> int:
+        """Number of frames that the file states, without those that its edit list hides; 0 if none.
+
+        Clips that were trimmed without encoding them anew keep the frames around the cut, which
+        decoders need and players do not show.
+        """
+        stated = int(self.stream.frames)
+        entries = self.stream.index_entries
+        if stated and "mp4" in self.format_name and len(entries):
+            return sum(not entry.is_discard for entry in entries)
+        return stated
+
+    @property
     def average_rate(self) -> Fraction | None:
         """Frames per second as declared or guessed by FFmpeg; None if unknown.
 
