@@ -23,7 +23,7 @@ _REFUSED_FORMATS = frozenset(
     # Text drawn as pictures: any text file would pass for a video.
     | {"adf", "bin", "idf", "tty", "xbin"}
 )
-_ADDRESS = re.compile(r"[A-Za-z][A-Za-z0-9+.-]+://")
+_ADDRESS = re.compile(r"[A-Za-z][A-Za-z0-9+.-]+:/")
 _PICTURE_FORMATS = re.compile(r".*_pipe|image2|ico|fits|alias_pix|brender_pix")
 
 
@@ -69,14 +69,16 @@ def open_container(path: Path, max_pixels: int = DEFAULT_MAX_PIXELS) -> InputCon
 
 
 def _check_regular(path: Path) -> None:
-    if _ADDRESS.match(str(path)) or re.match(r"[A-Za-z][A-Za-z0-9+.-]+:/", str(path)):
-        raise MediaError(path, "is a network address", "download the file and give its name")
     try:
         size = path.stat().st_size
     except (OSError, ValueError) as error:
-        raise MediaError(
-            path, f"no such file ({_system_reason(error)})", "check the name"
-        ) from error
+        if _ADDRESS.match(str(path)):
+            remedy = "download the file and give its name"
+            raise MediaError(path, "is a network address", remedy) from error
+        remedy = "check the name"
+        if re.search(r"#|%\d*d", path.name):
+            remedy += "; numbered stills are written name_####.png, or name_%01d.png without zeros"
+        raise MediaError(path, f"no such file ({_system_reason(error)})", remedy) from error
     if path.is_dir():
         raise MediaError(path, "is a folder", "give a file, or a pattern such as name_####.png")
     if not path.is_file():

@@ -14,7 +14,7 @@ from stages.media.color import read_color
 from stages.media.info import DEFAULT_MAX_PIXELS, MediaInfo
 from stages.media.naming import NumberedPattern, input_pattern
 from stages.media.orientation import sane_aspect
-from stages.media.sequence import existing_numbers
+from stages.media.sequence import existing_numbers, note_on_left_out
 from stages.media.source import VideoSource
 
 SEQUENCE_RATE = Fraction(25)
@@ -111,6 +111,7 @@ def describe_sequence(pattern: NumberedPattern, numbers: list[int], max_pixels: 
     with VideoSource(pattern.path_for(numbers[0]), max_pixels) as source:
         first = describe(source)
     rate = SEQUENCE_RATE
+    timeless = f"numbered stills carry no times: {rate} frames a second taken"
     return replace(
         first,
         path=Path(pattern.text),
@@ -120,7 +121,11 @@ def describe_sequence(pattern: NumberedPattern, numbers: list[int], max_pixels: 
         frame_count=len(numbers),
         start_time=Fraction(0),
         duration=(numbers[-1] - numbers[0] + 1) / rate,
-        notes=(*first.notes, f"numbered stills carry no times: {rate} frames a second taken"),
+        notes=(
+            *first.notes,
+            *note_on_left_out(pattern),
+            f"numbered stills carry no times: {rate} frames a second taken",
+        ),
     )
 
 

@@ -21,12 +21,32 @@ def existing_numbers(pattern: NumberedPattern) -> list[int]:
     """
     numbers = pattern.numbers()
     if not numbers:
+        other = pattern.taking_all() if pattern.left_out() else None
         raise MediaError(
             pattern.text,
             f"no still such as {pattern.path_for(1).name}",
-            "check the name and the number of digits",
+            f"write {other}" if other else "check the name and the number of digits",
         )
     return numbers
+
+
+def note_on_left_out(pattern: NumberedPattern) -> list[str]:
+    """Tell of stills that a pattern misses because their numbers have other digits.
+
+    Args:
+        pattern: The stills' name.
+
+    Returns:
+        One sentence, or none.
+    """
+    others = pattern.left_out()
+    if not others:
+        return []
+    named = " and ".join(others) if len(others) < 3 else f"{others[0]} to {others[-1]}"
+    stills = "1 still is" if len(others) == 1 else f"{len(others)} stills are"
+    all_of = pattern.taking_all()
+    remedy = f"; {all_of} takes all" if all_of else ""
+    return [f"{stills} left out, whose numbers have other digits ({named}){remedy}"]
 
 
 def refuse_gaps(pattern: NumberedPattern, numbers: list[int], wanted: FrameRange) -> None:
