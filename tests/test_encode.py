@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
@@ -9,6 +10,7 @@ import av
 import media_samples as samples
 import numpy as np
 import pytest
+from PIL import Image
 
 from stages.media import (
     EncodeOptions,
@@ -183,10 +185,10 @@ def test_jpeg_colours(clip: Path) -> None:
 
 
 def test_gif(clip: Path) -> None:
-    """A GIF has every frame, in hundredths of a second, in nearly the right colours."""
+    """A GIF has every frame there is time for, in hundredths of a second, nearly as coloured."""
     target = clip.with_name("out.gif")
     convert(clip, target, EncodeOptions(audio=False))
-    assert times_of(target) == [Fraction(n, 100) for n in (0, 4, 9, 10, 40, 44)]
+    assert times_of(target) == [Fraction(n, 100) for n in (0, 4, 9, 11, 40, 44)]
     with open_decoder(clip) as a, open_decoder(target) as b:
         assert np.abs(next(a).pixels.astype(int) - next(b).pixels).mean() < 4
 
@@ -344,3 +346,39 @@ def test_file_that_cannot_grow(tmp_path: Path, ending: str) -> None:
     done = subprocess.run(script, cwd=ROOT, timeout=60, capture_output=True, text=True)
     assert done.returncode == OutputError.exit_code, done.stderr
     assert sorted(tmp_path.iterdir()) == before
+
+
+@pytest.mark.parametrize("rate", [24, 25, 30, 48, 50, 60, 100, 120, Fraction(60000, 1001)])
+def test_gif_lasts_as_long_as_its_source(tmp_path: Path, rate: Fraction) -> None:
+    """No delay is under 2/100 s, which players show as 10/100; frames are dropped evenly."""
+    base = 1 / Fraction(rate)
+    info = replace(
+        probe(samples.write_still(tmp_path / "a.png", samples.picture(64, 48))),
+        average_rate=Fraction(rate),
+    )
+    count = round(rate)
+    with open_encoder(tmp_path / "a.gif", info, (64, 48), EncodeOptions()) as encoder:
+        for number in range(count):
+            encoder.write(samples.picture(64, 48, number), number, base)
+    with Image.open(tmp_path / "a.gif") as picture:
+        delays = []
+        for page in range(picture.n_frames):
+            picture.seek(page)
+            delays.append(picture.info["duration"])
+    assert min(delays) >= 20
+    assert max(delays) - min(delays) <= 10
+    assert abs(sum(delays) - 1000 * count * base) <= 10
+    dropped = count - len(delays)
+    assert (dropped > 0) == (rate > 50)
+    assert any(f"{dropped} are left out" in note for note in encoder.notes) == (rate > 50)
+
+
+def test_gif_of_a_burst_of_frames(tmp_path: Path) -> None:
+    """Frames of uneven times: the last of a burst is not lost for longer than a moment."""
+    info = probe(samples.write_still(tmp_path / "a.png", samples.picture(64, 48)))
+    times = [0, 1, 2, 3, 500, 501, 502, 1000]
+    with open_encoder(tmp_path / "a.gif", info, (64, 48), EncodeOptions()) as encoder:
+        for number, time in enumerate(times):
+            encoder.write(samples.picture(64, 48, number), time, samples.MILLISECOND)
+    shown = [0, 2, 50, 52, 100]
+    assert times_of(tmp_path / "a.gif") == [Fraction(time, 100) for time in shown]

@@ -124,7 +124,7 @@ def describe_sequence(pattern: NumberedPattern, numbers: list[int], max_pixels: 
         notes=(
             *first.notes,
             *note_on_left_out(pattern),
-            f"numbered stills carry no times: {rate} frames a second taken",
+            timeless,
         ),
     )
 
