@@ -242,8 +242,12 @@ def _report(error: BaseException, arguments: argparse.Namespace) -> int:
     Returns:
         The exit code.
     """
-    from warp_kernels.errors import TrimotionError
+    from warp_kernels.errors import OptionError, TrimotionError
+    from warp_kernels.memory import MORE_MEMORY, is_limit_near, is_out_of_memory
 
+    # Under a limit libraries fail in ways of their own, and options that would fit do not.
+    if isinstance(error, OptionError) and is_limit_near():
+        return _fail(f"out of memory ({error}); {MORE_MEMORY}", 1)
     if isinstance(error, TrimotionError):
         return _fail(str(error), error.exit_code)
     if isinstance(error, KeyboardInterrupt):
@@ -254,9 +258,10 @@ def _report(error: BaseException, arguments: argparse.Namespace) -> int:
         # The reader of our output left. What is still buffered must not raise at exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 1
-    if isinstance(error, MemoryError):
-        return _fail("out of memory; try a smaller --scale, or a smaller source", 1)
     kind = type(error).__name__
+    if isinstance(error, Exception) and is_out_of_memory(error):
+        reason = "" if isinstance(error, MemoryError) else f" ({kind}: {error})"
+        return _fail(f"out of memory{reason}; {MORE_MEMORY}", 1)
     return _fail(f"internal error ({kind}: {error}); run again with --debug and report it", 1)
 
 

@@ -10,7 +10,7 @@ import av
 
 from stages.media.audio_plan import AudioPlan, plan_audio
 from stages.media.codecs import CONTAINERS, Container, Encoder, find_encoder
-from stages.media.commit import output_error
+from stages.media.commit import output_error, remove_left_overs, true_place
 from stages.media.encoder_setup import EncodeOptions, try_encoder
 from stages.media.frame_range import FrameRange
 from stages.media.info import MediaInfo
@@ -212,16 +212,20 @@ def _check_quality(encoder: Encoder, options: EncodeOptions) -> None:
 def _check_place(
     plan: OutputPlan, source: MediaInfo, options: EncodeOptions, frame_range: FrameRange
 ) -> None:
-    folder = plan.path.parent
+    place = true_place(plan.path)
+    folder = place.parent
     if not folder.is_dir():
         raise OutputError(plan.path, f"there is no folder {folder}", "create it first")
-    if plan.path.is_dir():
+    if place.is_dir():
         raise OutputError(plan.path, "is a folder", "give the name of a file")
+    if place.is_symlink() or (place.exists() and not place.is_file()):
+        raise OutputError(plan.path, "is no regular file", "give the name of a file")
     existing = _existing(plan, frame_range)
     if _is_source(plan, existing, source):
         raise OutputError(plan.path, "is the input itself", "choose another name")
     if existing and not options.overwrite:
         raise OutputError(existing[0], "exists already", "choose another name or --overwrite")
+    remove_left_overs(folder)
     probe = folder / f".trimotion-{os.getpid()}.test"
     try:
         probe.touch()
@@ -232,8 +236,8 @@ def _check_place(
 
 def _existing(plan: OutputPlan, frame_range: FrameRange) -> list[Path]:
     if plan.pattern is None:
-        return [plan.path] if plan.path.exists() else []
-    wanted = (n for n in plan.pattern.numbers() if frame_range.holds(n, Fraction(0)))
+        return [plan.path] if os.path.lexists(plan.path) else []
+    wanted = (n for n in plan.pattern.numbers(links=True) if frame_range.holds(n, Fraction(0)))
     return [plan.pattern.path_for(number) for number in wanted]
 
 

@@ -19,6 +19,7 @@ from stages.media.container import (
 from stages.media.orientation import Orientation, orientation_of
 from stages.media.picture_size import check_size
 from warp_kernels.errors import MediaError
+from warp_kernels.memory import MORE_MEMORY, is_limit_near
 
 MAX_FAILURES = 10_000
 """Undecodable packets after which a file is given up."""
@@ -200,6 +201,8 @@ class VideoSource:
             except EOFError:
                 return
             except DAMAGE as error:
+                if isinstance(error, MemoryError) and is_limit_near():
+                    raise MediaError(self.path, "out of memory", MORE_MEMORY) from error
                 self._count(error)
                 if self.failures > MAX_FAILURES:
                     return
