@@ -273,7 +273,9 @@ def _left_over(arguments: argparse.Namespace) -> str:
 
 
 def _fail(text: str, code: int) -> int:
-    print("trimotion: error: " + " ".join(text.split()), file=sys.stderr)
+    from pipeline.progress import tell
+
+    tell("trimotion: error: " + " ".join(text.split()), sys.stderr)
     return code
 
 

@@ -97,7 +97,8 @@ def test_resumed_clip_shows_its_source(clip: Path, tmp_path: Path) -> None:
     track = tmp_path / "t.mtrk"
     look = ["--style", "lenses", *QUICK, "--track", str(track)]
     assert (
-        main(["animate", str(clip), "-o", str(tmp_path / "a_%01d.png"), "--frames", "0-1", *look]) == 0
+        main(["animate", str(clip), "-o", str(tmp_path / "a_%01d.png"), "--frames", "0-1", *look])
+        == 0
     )
     more = ["--frames", "0-3", "--resume"]
     assert main(["animate", str(clip), "-o", str(tmp_path / "b_%01d.png"), *look, *more]) == 0
