@@ -1,15 +1,11 @@
-"""How many channels a sound has and in which order, without freeing what FFmpeg still holds.
+"""How many channels a sound has and in which order."""
 
-PyAV 18.1 hands out a copy of a stream's channel layout whose end frees what the stream still
-points at, if the order is a custom one: the process then aborts. A wrapper that never ends frees
-nothing, so every one that we cause is kept for ever; that is some 60 bytes each.
-"""
-
-import ctypes
 from dataclasses import dataclass
 
 from av.audio.codeccontext import AudioCodecContext
 from av.audio.frame import AudioFrame
+
+from stages.media.kept import keep
 
 
 @dataclass(frozen=True)
@@ -25,11 +21,12 @@ class Channels:
 def channels_of(sound: AudioCodecContext | AudioFrame) -> Channels:
     """Channels of a codec or of a decoded frame.
 
-    Every frame that a decoder gives must pass through here, wanted or not.
+    Every frame that a decoder gives must pass through here, wanted or not: the wrapper of a custom
+    order would free what FFmpeg still holds.
 
     Args:
         sound: The codec or the frame.
     """
     layout = sound.layout
-    ctypes.pythonapi.Py_IncRef(ctypes.py_object(layout))
+    keep(layout)
     return Channels(layout.nb_channels, layout.name)

@@ -93,6 +93,7 @@ class Decoder:
         self._paper = paper
         self._reader = RgbReader(paper)
         self._shown = info.orientation
+        self._profile: bytes | None = None
         self._delivered = 0
         self._met = False
         self._iterator: Iterator[Frame] | None = None
@@ -133,7 +134,7 @@ class Decoder:
         return Frame(index, pts, info.time_base, upright(self._pixels(raw, size), shown))
 
     def _pixels(self, raw: VideoFrame, size: tuple[int, int]) -> np.ndarray:
-        color = read_color(raw)
+        color = read_color(raw, self._profile)
         try:
             if color.hdr is not None:
                 pixels = tone_map(self._reader.read16(raw, color, size), color.hdr)
@@ -176,10 +177,12 @@ class _FileDecoder(Decoder):
         self._source = VideoSource(path, max_pixels, threads)
         try:
             info = describe(self._source)
+            profile = self._source.profile_of(self._source.first_frame())
         except BaseException:
             self._source.close()
             raise
         super().__init__(info, wanted, margin, str(path), paper)
+        self._profile = profile
         self._end = Fraction(0)
 
     def close(self) -> None:
@@ -267,6 +270,7 @@ class _SequenceDecoder(Decoder):
         stills = still_frames(self._pattern, numbers, self._max_pixels, self.warnings)
         for number, source, raw in stills:
             self._shown = source.orientation_of(raw)  # a camera may be turned between two
+            self._profile = source.profile_of(raw)
             yield self._to_frame(number, number - first, raw)
         self._refuse_nothing(f"stills {first} to {self._numbers[-1]}")
 

@@ -59,7 +59,7 @@ def describe(source: VideoSource) -> MediaInfo:
         MediaError: If no frame can be decoded.
     """
     frame = source.first_frame()
-    color = read_color(frame)
+    color = read_color(frame, source.profile_of(frame))
     shown = source.orientation_of(frame)
     notes = [*source.notes, *color.notes, *_notes_on(frame, color.hdr)]
     aspect = sane_aspect(source.stream.sample_aspect_ratio, shown)

@@ -1,5 +1,6 @@
 """Numbered stills as frames."""
 
+import gc
 from collections.abc import Iterator
 
 from av.video.frame import VideoFrame
@@ -90,5 +91,6 @@ def still_frames(
         try:
             with VideoSource(pattern.path_for(number), max_pixels) as source:
                 yield number, source, source.first_frame()
+            gc.collect(1)  # frames whose side data was read are large and hold themselves
         except MediaError as error:
             problems.append(f"left out: {error}")

@@ -18,6 +18,7 @@ from stages.media.container import (
 )
 from stages.media.orientation import Orientation, orientation_of
 from stages.media.picture_size import check_size
+from stages.media.side_data import side_data
 from warp_kernels.errors import MediaError
 from warp_kernels.memory import MORE_MEMORY, is_limit_near
 
@@ -94,6 +95,14 @@ class VideoSource:
             frame: A decoded frame.
         """
         return self._photo.orientation if self._photo else orientation_of(frame)
+
+    def profile_of(self, frame: VideoFrame) -> bytes | None:
+        """ICC profile of a frame of this file, or None.
+
+        Args:
+            frame: A decoded frame.
+        """
+        return self._photo.photo.profile if self._photo else side_data(frame, "ICC_PROFILE")
 
     @property
     def time_base(self) -> Fraction:
