@@ -140,7 +140,7 @@ def render(job: Job, track: TrackReader, info: MediaInfo, progress: Progress) ->
             writer.put(Take(snapshot, row.shot, is_shown, source, share))
             if is_shown:
                 tally.add(row.triangle_count, snapshot.rmse)
-    return tally.result(begun, (), drawing.notes)
+    return tally.result(begun, (), [*device.notes, *drawing.notes])
 
 
 def _convert(job: Job, progress: Progress, *, draws: bool) -> Animated:
@@ -171,7 +171,8 @@ def _convert(job: Job, progress: Progress, *, draws: bool) -> Animated:
                 track.finish()
     made = [] if drawing is None else drawing.notes
     warnings = (*decoder.warnings, *weights.warnings)
-    return tally.result(begun, warnings, [*decoder.notes, *weights.notes, *notes, *made])
+    told = [*device.notes, *decoder.notes, *weights.notes]
+    return tally.result(begun, warnings, [*told, *notes, *made])
 
 
 def _triangulator(job: Job, info: MediaInfo, device: Device) -> Triangulator:

@@ -262,6 +262,9 @@ def _report(error: BaseException, arguments: argparse.Namespace) -> int:
     if isinstance(error, Exception) and is_out_of_memory(error):
         reason = "" if isinstance(error, MemoryError) else f" ({kind}: {error})"
         return _fail(f"out of memory{reason}; {MORE_MEMORY}", 1)
+    if isinstance(error, OSError) and error.filename and error.strerror:
+        reason = error.strerror.lower()
+        return _fail(f"{error.filename}: {reason}; check the place, its rights and free space", 1)
     return _fail(f"internal error ({kind}: {error}); run again with --debug and report it", 1)
 
 

@@ -20,6 +20,7 @@ import numpy as np
 import warp as wp
 
 from warp_kernels.errors import OptionError
+from warp_kernels.kernel_cache import settle_cache
 from warp_kernels.meet import STRIDE, address_of_sleep, meet
 
 SMALLEST_PART = 16
@@ -103,6 +104,8 @@ class Device:
     """
 
     def __init__(self, name: str = "auto", threads: int = 0) -> None:
+        self.notes = settle_cache()
+        """Choices that were made, one sentence each."""
         _start_warp()
         if name == "auto":
             name = "cuda:0" if wp.get_cuda_device_count() else "cpu"
