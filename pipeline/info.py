@@ -90,7 +90,8 @@ def _rows(info: MediaInfo) -> list[tuple[str, str]]:
         ("colour", _color(info)),
     ]
     if info.frame_count is not None and info.kind != "image":
-        rows.append(("frames", str(info.frame_count)))
+        numbers = f", numbered from {info.first_frame}" if info.first_frame else ""
+        rows.append(("frames", f"{info.frame_count}{numbers}"))
     if info.average_rate is not None:
         rows.append(("rate", f"{float(info.average_rate):.6g} frames a second"))
     if info.duration is not None:

@@ -63,6 +63,14 @@ class MediaInfo:
     mirrored: bool = False
     """Whether left and right are exchanged after the turn."""
 
+    first_frame: int = 0
+    """Number of the first frame: that of numbered stills stands in their names."""
+
+    @property
+    def last_frame(self) -> int | None:
+        """Number of the last frame if none is missing, an estimate; None if unknown."""
+        return None if self.frame_count is None else self.first_frame + self.frame_count - 1
+
     @property
     def orientation(self) -> Orientation:
         """How the stored picture is shown."""

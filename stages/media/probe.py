@@ -119,6 +119,7 @@ def describe_sequence(pattern: NumberedPattern, numbers: list[int], max_pixels: 
         time_base=1 / rate,
         average_rate=rate,
         frame_count=len(numbers),
+        first_frame=numbers[0],
         start_time=Fraction(0),
         duration=(numbers[-1] - numbers[0] + 1) / rate,
         notes=(
