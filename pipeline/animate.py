@@ -252,7 +252,7 @@ def _fitted(
     weights = open_weights(job.weights, (info.width, info.height), around)
     triangulator = _triangulator(job, info, device)
     wanted = {row.frame for row in rows}
-    with open_decoder(job.source, around) as decoder:
+    with open_decoder(job.source, around, read=job.read) as decoder:
         frames = (frame for frame in decoder if frame.index in wanted)
         for frame in weights.beside(frames):
             yield triangulator.fit(frame, track.snapshot(frame.index).mesh)

@@ -11,7 +11,7 @@ import sys
 import threading
 import traceback
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -46,7 +46,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     except SystemExit as request:
         return request.code if isinstance(request.code, int) else 2
     try:
-        with _terminable():
+        with _terminable(), _piped(arguments):
             COMMANDS[arguments.command](arguments)
             sys.stdout.flush()
     except BaseException as error:  # one place where every failure becomes a line and a code
@@ -54,6 +54,16 @@ def main(argv: Sequence[str] | None = None) -> int:
             traceback.print_exc()
         return _report(error, arguments)
     return 0
+
+
+def _piped(arguments: argparse.Namespace) -> AbstractContextManager[None]:
+    """Files in place of `-`, if a name is one."""
+    names = (getattr(arguments, key, None) or "" for key in ("source", "file", "output"))
+    if not any(name.startswith("-") for name in names):
+        return nullcontext()
+    from pipeline.pipes import piped
+
+    return piped(arguments)
 
 
 def run_animate(arguments: argparse.Namespace) -> None:

@@ -61,7 +61,7 @@ def animate_in_parts(job: Job, progress: Progress) -> Animated:
     """
     begun = perf_counter()
     both = _Halves(progress)
-    info = probe(job.source)
+    info = probe(job.source, read=job.read)
     check_followed(job, info)
     check_drawing(job, info)
     if job.track is None and job.resume:

@@ -12,7 +12,7 @@ from stages.media.container import DAMAGE, reason_of
 from stages.media.heif import Photo, compose, read_photo
 from stages.media.orientation import Orientation
 from stages.media.picture_size import check_size
-from warp_kernels.errors import MediaError
+from warp_kernels.errors import MediaError, OptionError
 
 _REMEDY = "convert it to JPEG or PNG with another program first"
 
@@ -29,6 +29,8 @@ class CodedPhoto:
     """How the photo is made."""
     streams: Mapping[int, VideoStream]
     """FFmpeg's streams of the pictures, by the pictures' numbers."""
+    page: int | None = None
+    """Which picture of several was asked for, from 1."""
 
     @property
     def stream(self) -> VideoStream:
@@ -38,10 +40,11 @@ class CodedPhoto:
     @property
     def notes(self) -> tuple[str, ...]:
         """Choices that were made, one sentence each."""
-        others = self.photo.others
+        others, page = self.photo.others, self.page
         if not others:
             return ()
-        return (f"{others + 1} pictures in one file: the main one is shown",)
+        shown = "the main one is" if page is None else f"number {page} is"
+        return (f"{others + 1} pictures in one file: {shown} shown, --page N shows another",)
 
     @property
     def orientation(self) -> Orientation:
@@ -69,28 +72,34 @@ class CodedPhoto:
         yield whole
 
 
-def open_photo(path: Path, container: InputContainer, max_pixels: int) -> CodedPhoto | None:
+def open_photo(
+    path: Path, container: InputContainer, max_pixels: int, page: int | None
+) -> CodedPhoto | None:
     """Find the photo of an opened file.
 
     Args:
         path: The file.
         container: The same, opened.
         max_pixels: Largest picture that is opened [px].
+        page: Which picture of several, from 1; None for the main one.
 
     Returns:
         The photo, or None if the file holds something else.
 
     Raises:
+        OptionError: If there is no such picture.
         MediaError: If the photo is damaged, too large or made in a way that is not known.
     """
     if "mp4" not in container.format.name:
         return None
     try:
-        photo = read_photo(path)
+        photo = read_photo(path, page)
     except (ValueError, OSError) as error:
         reason = f"its photo cannot be read ({reason_of(error)})"
         raise MediaError(path, reason, _REMEDY) from error
     if photo is None:
+        if page not in (None, 1):
+            raise OptionError(f"--page {page}: {path} is no photo; leave the option out")
         return None
     check_size(path, *photo.size, max_pixels)
     wanted = {*photo.tiles, *(photo.mask.tiles if photo.mask else ())}
@@ -98,4 +107,4 @@ def open_photo(path: Path, container: InputContainer, max_pixels: int) -> CodedP
     if set(streams) != wanted:
         missing = f"FFmpeg hands over {len(streams)} of {len(wanted)} parts of its photo"
         raise MediaError(path, missing, _REMEDY)
-    return CodedPhoto(path, container, photo, streams)
+    return CodedPhoto(path, container, photo, streams, page)

@@ -20,6 +20,7 @@ from stages.media.info import DEFAULT_MAX_PIXELS, MediaInfo
 from stages.media.naming import NumberedPattern, input_pattern
 from stages.media.orientation import upright
 from stages.media.probe import describe, describe_sequence
+from stages.media.read_options import AS_IT_COMES, ReadOptions
 from stages.media.sequence import existing_numbers, refuse_gaps, still_frames
 from stages.media.source import VideoSource
 from stages.media.timing import TimeRepair, usual_step
@@ -37,6 +38,7 @@ def open_decoder(
     max_pixels: int = DEFAULT_MAX_PIXELS,
     threads: int = 0,
     paper: int = WHITE,
+    read: ReadOptions = AS_IT_COMES,
 ) -> "Decoder":
     """Open a source for reading its frames.
 
@@ -48,15 +50,16 @@ def open_decoder(
         max_pixels: Largest picture that is opened [px].
         threads: Decoder threads, 0 for one per core.
         paper: Grey that shows through transparent pixels [code value].
+        read: What the user chose.
 
     Raises:
         MediaError: If it cannot be read.
-        OptionError: If a pattern has more than one number field.
+        OptionError: If a choice does not fit the source, or a pattern has several number fields.
     """
     pattern = input_pattern(path)
     if pattern is not None:
-        return _SequenceDecoder(pattern, frame_range, margin, max_pixels, paper)
-    return _FileDecoder(Path(path), frame_range, margin, max_pixels, threads, paper)
+        return _SequenceDecoder(pattern, frame_range, margin, max_pixels, paper, read)
+    return _FileDecoder(Path(path), frame_range, margin, max_pixels, threads, paper, read)
 
 
 class Decoder:
@@ -157,6 +160,9 @@ class Decoder:
 
     def _refuse_nothing(self, available: str) -> None:
         if not (self._met and self._delivered):
+            wanted = self._range
+            if wanted.start_time is not None or wanted.end_time is not None:
+                raise OptionError(_no_such_times(self._name, wanted, self.info, available))
             raise OptionError(
                 f"frames {self._range} of {self._name}: there are none; the source has {available}"
             )
@@ -173,10 +179,11 @@ class _FileDecoder(Decoder):
         max_pixels: int,
         threads: int,
         paper: int,
+        read: ReadOptions,
     ) -> None:
-        self._source = VideoSource(path, max_pixels, threads)
+        self._source = VideoSource(path, max_pixels, threads, read)
         try:
-            info = describe(self._source)
+            info = describe(self._source, read)
             profile = self._source.profile_of(self._source.first_frame())
         except BaseException:
             self._source.close()
@@ -255,19 +262,20 @@ class _SequenceDecoder(Decoder):
         margin: tuple[int, int],
         max_pixels: int,
         paper: int,
+        read: ReadOptions,
     ) -> None:
         self._pattern = pattern
         self._numbers = existing_numbers(pattern)
-        self._max_pixels = max_pixels
+        self._max_pixels, self._read = max_pixels, read
         refuse_gaps(pattern, self._numbers, wanted)
-        info = describe_sequence(pattern, self._numbers, max_pixels)
+        info = describe_sequence(pattern, self._numbers, max_pixels, read)
         super().__init__(info, wanted, margin, pattern.text, paper)
 
     def _frames(self) -> Iterator[Frame]:
         numbers = self._given()
         self._met = bool(numbers)
         first = self._numbers[0]
-        stills = still_frames(self._pattern, numbers, self._max_pixels, self.warnings)
+        stills = still_frames(self._pattern, numbers, self._max_pixels, self._read, self.warnings)
         for number, source, raw in stills:
             self._shown = source.orientation_of(raw)  # a camera may be turned between two
             self._profile = source.profile_of(raw)
@@ -282,3 +290,13 @@ class _SequenceDecoder(Decoder):
         if not held:
             return []
         return in_step[max(0, held[0] - self._before) : held[-1] + 1 + self._after]
+
+
+def _no_such_times(name: str, wanted: FrameRange, info: MediaInfo, available: str) -> str:
+    """What to say if a range of times holds no frame."""
+    times = (("--start", wanted.start_time), ("--end", wanted.end_time))
+    told = " ".join(f"{flag} {float(time):g}" for flag, time in times if time is not None)
+    if wanted.first or wanted.last is not None or wanted.step > 1:
+        told = f"--frames {wanted} {told}"
+    length = "" if info.duration is None else f" and lasts {float(info.duration):.2f} s"
+    return f"{told}: no frame of {name} is shown then; the source has {available}{length}"

@@ -14,11 +14,10 @@ from stages.media.color import read_color
 from stages.media.info import DEFAULT_MAX_PIXELS, MediaInfo
 from stages.media.naming import NumberedPattern, input_pattern
 from stages.media.orientation import sane_aspect
+from stages.media.read_options import AS_IT_COMES, ReadOptions
 from stages.media.sequence import existing_numbers, note_on_left_out
 from stages.media.source import VideoSource
-
-SEQUENCE_RATE = Fraction(25)
-"""Frames per second of numbered stills, which carry no times."""
+from warp_kernels.errors import OptionError
 
 _CLOCK = re.compile(r"(\d+):(\d\d):(\d\d(?:\.\d+)?)")
 _LEAST_BYTES = 8
@@ -31,31 +30,39 @@ _BARE_STREAMS = frozenset(
 """Formats without a container: FFmpeg guesses their duration from a bit rate, and badly."""
 
 
-def probe(path: str | Path, *, max_pixels: int = DEFAULT_MAX_PIXELS) -> MediaInfo:
+def probe(
+    path: str | Path,
+    *,
+    max_pixels: int = DEFAULT_MAX_PIXELS,
+    read: ReadOptions = AS_IT_COMES,
+) -> MediaInfo:
     """Look at a source without decoding more than its first frame.
 
     Args:
         path: A video, a still, or a pattern of numbered stills.
         max_pixels: Largest picture that is opened [px].
+        read: What the user chose.
 
     Raises:
         MediaError: If it cannot be read.
-        OptionError: If a pattern has more than one number field.
+        OptionError: If a choice does not fit the source, or a pattern has several number fields.
     """
     pattern = input_pattern(path)
     if pattern is not None:
-        return describe_sequence(pattern, existing_numbers(pattern), max_pixels)
-    with VideoSource(Path(path), max_pixels) as source:
-        return describe(source)
+        return describe_sequence(pattern, existing_numbers(pattern), max_pixels, read)
+    with VideoSource(Path(path), max_pixels, read=read) as source:
+        return describe(source, read)
 
 
-def describe(source: VideoSource) -> MediaInfo:
+def describe(source: VideoSource, read: ReadOptions = AS_IT_COMES) -> MediaInfo:
     """Properties of an opened file.
 
     Args:
         source: The file; its first frame is decoded but not consumed.
+        read: What the user chose.
 
     Raises:
+        OptionError: If a frame rate is given for what has times.
         MediaError: If no frame can be decoded.
     """
     frame = source.first_frame()
@@ -67,6 +74,10 @@ def describe(source: VideoSource) -> MediaInfo:
         notes.append(f"pixel aspect {source.stream.sample_aspect_ratio} ignored: taken as 1")
     sideways = shown.is_sideways
     picture = source.is_picture
+    if read.fps is not None and not picture and source.format_name not in _BARE_STREAMS:
+        raise OptionError(
+            f"--fps {read.fps}: {source.path} has times of its own; leave the option out"
+        )
     audio_codec, audio_channels, audio_rate = _audio(source)
     codec = source.stream.codec_context
     return MediaInfo(
@@ -82,7 +93,7 @@ def describe(source: VideoSource) -> MediaInfo:
         rotation=shown.rotation,
         sample_aspect=aspect or Fraction(1),
         time_base=source.time_base,
-        average_rate=None if picture else source.average_rate,
+        average_rate=read.fps if picture else source.average_rate,
         frame_count=1 if picture else _frame_count(source),
         start_time=(frame.pts or 0) * source.time_base,
         duration=None if picture else _duration(source),
@@ -97,21 +108,24 @@ def describe(source: VideoSource) -> MediaInfo:
     )
 
 
-def describe_sequence(pattern: NumberedPattern, numbers: list[int], max_pixels: int) -> MediaInfo:
+def describe_sequence(
+    pattern: NumberedPattern, numbers: list[int], max_pixels: int, read: ReadOptions
+) -> MediaInfo:
     """Properties of numbered stills, by their first one.
 
     Args:
         pattern: Their name.
         numbers: The frame numbers that exist.
         max_pixels: Largest picture that is opened [px].
+        read: What the user chose.
 
     Raises:
         MediaError: If the first still cannot be read.
     """
-    with VideoSource(pattern.path_for(numbers[0]), max_pixels) as source:
-        first = describe(source)
-    rate = SEQUENCE_RATE
-    timeless = f"numbered stills carry no times: {rate} frames a second taken"
+    with VideoSource(pattern.path_for(numbers[0]), max_pixels, read=read) as source:
+        first = describe(source, read)
+    rate = read.rate
+    timeless = [f"numbered stills carry no times: {rate} frames a second taken, see --fps"]
     return replace(
         first,
         path=Path(pattern.text),
@@ -125,7 +139,7 @@ def describe_sequence(pattern: NumberedPattern, numbers: list[int], max_pixels: 
         notes=(
             *first.notes,
             *note_on_left_out(pattern),
-            timeless,
+            *(timeless if read.fps is None else ()),
         ),
     )
 

@@ -7,6 +7,7 @@ from av.video.frame import VideoFrame
 
 from stages.media.frame_range import FrameRange
 from stages.media.naming import NumberedPattern
+from stages.media.read_options import ReadOptions
 from stages.media.source import VideoSource
 from warp_kernels.errors import MediaError
 
@@ -77,7 +78,11 @@ def refuse_gaps(pattern: NumberedPattern, numbers: list[int], wanted: FrameRange
 
 
 def still_frames(
-    pattern: NumberedPattern, numbers: list[int], max_pixels: int, problems: list[str]
+    pattern: NumberedPattern,
+    numbers: list[int],
+    max_pixels: int,
+    read: ReadOptions,
+    problems: list[str],
 ) -> Iterator[tuple[int, VideoSource, VideoFrame]]:
     """Decode stills one after the other: their number, their opened file, their picture.
 
@@ -85,11 +90,12 @@ def still_frames(
         pattern: The stills' name.
         numbers: The frame numbers to decode.
         max_pixels: Largest picture that is opened [px].
+        read: What the user chose.
         problems: Receives one sentence for every still that cannot be decoded and is left out.
     """
     for number in numbers:
         try:
-            with VideoSource(pattern.path_for(number), max_pixels) as source:
+            with VideoSource(pattern.path_for(number), max_pixels, read=read) as source:
                 yield number, source, source.first_frame()
             gc.collect(1)  # frames whose side data was read are large and hold themselves
         except MediaError as error:

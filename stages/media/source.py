@@ -8,7 +8,7 @@ from types import TracebackType
 from av.video.frame import VideoFrame
 
 from stages.media.alpha_decoder import alpha_decoder
-from stages.media.coded_photo import open_photo
+from stages.media.coded_photo import CodedPhoto, open_photo
 from stages.media.container import (
     DAMAGE,
     choose_video,
@@ -17,9 +17,11 @@ from stages.media.container import (
     reason_of,
 )
 from stages.media.orientation import Orientation, orientation_of
+from stages.media.pages import pages_of, with_page_first
 from stages.media.picture_size import check_size
+from stages.media.read_options import AS_IT_COMES, ReadOptions
 from stages.media.side_data import side_data
-from warp_kernels.errors import MediaError
+from warp_kernels.errors import MediaError, OptionError
 from warp_kernels.memory import MORE_MEMORY, is_limit_near
 
 MAX_FAILURES = 10_000
@@ -33,15 +35,19 @@ class VideoSource:
     cannot be decoded are skipped and counted, and a file that breaks off simply ends.
     """
 
-    def __init__(self, path: Path, max_pixels: int, threads: int = 0) -> None:
+    def __init__(
+        self, path: Path, max_pixels: int, threads: int = 0, read: ReadOptions = AS_IT_COMES
+    ) -> None:
         """Open a file.
 
         Args:
             path: A local file.
             max_pixels: Largest picture that is decoded [px].
             threads: Decoder threads, 0 for one per core.
+            read: What the user chose.
 
         Raises:
+            OptionError: If a page or stream is chosen that there is not.
             MediaError: If it cannot be opened, holds no video or declares too large a picture.
         """
         self.path = path
@@ -52,15 +58,18 @@ class VideoSource:
         self._max_pixels = max_pixels
         self._guard = max_pixels + max_pixels // 8 + 2**16  # decoders round sizes up
         self._threads = threads
+        self._read = read
+        self._photo: CodedPhoto | None = None
         self._open()
 
     def _open(self) -> None:
-        self.container = open_container(self.path, self._guard)
+        read = self._read
+        self.container = open_container(self.path, self._guard, read.fps)
         try:
-            self._photo = open_photo(self.path, self.container, self._max_pixels)
-            chosen = self._photo or choose_video(self.container, self.path)
-            self.stream = chosen.stream
-            self.notes = chosen.notes
+            pages = self._choose_page()
+            self._photo = open_photo(self.path, self.container, self._max_pixels, read.page)
+            chosen = self._photo or choose_video(self.container, self.path, read.stream)
+            self.stream, self.notes = chosen.stream, (*chosen.notes, *pages)
             codec = self.stream.codec_context
             check_size(self.path, codec.width, codec.height, self._max_pixels)
             codec.options = {"max_pixels": str(self._guard)}
@@ -72,6 +81,30 @@ class VideoSource:
             raise
         self._ahead: VideoFrame | None = None
         self._decoded = self._photo.frames() if self._photo else self._decode_all()
+
+    def _choose_page(self) -> tuple[str, ...]:
+        """Open the page of a TIFF that is wanted, and note that there are others."""
+        page = self._read.page
+        if "tiff" not in self._codec_names():
+            if page is not None and page > 1 and "mp4" not in self.container.format.name:
+                raise OptionError(f"--page {page}: {self.path} has one picture; leave it out")
+            return ()
+        pages = pages_of(self.path)
+        if page is not None and page > max(1, len(pages)):
+            what = f"{len(pages)} pages" if len(pages) > 1 else "one page"
+            raise OptionError(f"--page {page}: {self.path} has {what}; give a smaller number")
+        if len(pages) < 2:
+            return ()
+        if page is not None:
+            self.container.close()
+            content = with_page_first(self.path, pages[page - 1])
+            self.container = open_container(self.path, self._guard, content=content)
+        shown = "the first is" if page is None else f"page {page} is"
+        return (f"{len(pages)} pages in one file: {shown} shown, --page N shows another",)
+
+    def _codec_names(self) -> set[str]:
+        streams = self.container.streams.video
+        return {s.codec_context.name for s in streams if s.codec_context and self.is_picture}
 
     def reopen(self) -> None:
         """Start again at the first frame."""

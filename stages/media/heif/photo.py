@@ -11,6 +11,7 @@ from pathlib import Path
 
 from stages.media.heif.boxes import Box, Reader, top_boxes
 from stages.media.orientation import Orientation
+from warp_kernels.errors import OptionError
 
 BRANDS = frozenset({"heic", "heix", "heim", "heis", "mif1", "mif2", "avif", "miaf", "1pic"})
 """Kinds of files that may hold a photo."""
@@ -62,13 +63,15 @@ class _Items:
     """Content of `idat`."""
 
 
-def read_photo(path: Path) -> Photo | None:
+def read_photo(path: Path, page: int | None = None) -> Photo | None:
     """The photo of a file, or None if the file is none that holds one.
 
     Args:
         path: The file.
+        page: Which whole picture of several, from 1; None for the main one.
 
     Raises:
+        OptionError: If there is no such picture.
         ValueError: If the file holds a photo that is damaged or made in a way that is not known.
         OSError: If it cannot be read.
     """
@@ -81,12 +84,25 @@ def read_photo(path: Path) -> Photo | None:
         return None
     try:
         items = _read_items(path, boxes["meta"])
-        photo = _photo_of(items, items.main)
-        mask = _mask_of(items, items.main)
+        chosen = items.main if page is None else _whole_picture(items, page)
+        photo = _photo_of(items, chosen)
+        mask = _mask_of(items, chosen)
     except (struct.error, IndexError, KeyError, ZeroDivisionError) as error:
         raise ValueError(f"its boxes are damaged ({error})") from error
-    whole = [n for n, kind in items.kinds.items() if kind in _PICTURES and n not in items.hidden]
-    return replace(photo, mask=mask, others=len(set(whole) - {items.main}))
+    return replace(photo, mask=mask, others=len(_whole_pictures(items)) - 1)
+
+
+def _whole_pictures(items: _Items) -> list[int]:
+    """Numbers of the pictures that are no part of another one, in order."""
+    whole = {n for n, kind in items.kinds.items() if kind in _PICTURES and n not in items.hidden}
+    return sorted(whole | {items.main})
+
+
+def _whole_picture(items: _Items, page: int) -> int:
+    whole = _whole_pictures(items)
+    if page > len(whole):
+        raise OptionError(f"--page {page}: {items.path} has {len(whole)}; give a smaller number")
+    return whole[page - 1]
 
 
 _PICTURES = frozenset({"hvc1", "hev1", "av01", "avc1", "vvc1", "jpeg", "grid", "iden", "iovl"})
