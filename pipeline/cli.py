@@ -96,11 +96,11 @@ def run_solve(arguments: argparse.Namespace) -> None:
         if job.jobs > 1:
             from pipeline.parts import solve_in_parts
 
-            _tell(progress, solve_in_parts(job, progress), job.output)
+            _tell(progress, solve_in_parts(job, progress), job.track or job.output)
         else:
             from pipeline.animate import solve
 
-            _tell(progress, solve(job, progress), job.output)
+            _tell(progress, solve(job, progress), job.track or job.output)
 
 
 def run_render(arguments: argparse.Namespace) -> None:
@@ -233,13 +233,14 @@ def _progress(arguments: argparse.Namespace) -> "Progress":
 
 def _tell(progress: "Progress", result: "Animated", output: Path) -> None:
     """Tell what came of a run."""
+    from pipeline.pipes import shown_name
     from pipeline.progress import Summary
 
     for note in result.notes:
         progress.note(note)
     for warning in result.warnings:
         progress.warn(warning)
-    progress.finish(Summary(result.frames, result.seconds, result.mean_rmse, output))
+    progress.finish(Summary(result.frames, result.seconds, result.mean_rmse, shown_name(output)))
 
 
 def _report(error: BaseException, arguments: argparse.Namespace) -> int:

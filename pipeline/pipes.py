@@ -15,8 +15,9 @@ from warp_kernels.errors import MediaError, OptionError
 
 PIPE = "-"
 """How a user names a pipe; `-.gif` and the like choose the format of an output."""
-FORMAT = ".mkv"
-"""Format of an output whose name does not say."""
+FORMATS = {"solve": ".mtrk", "join": ".mtrk"}
+"""Ending of an output whose name does not say, by the command; Matroska for the others."""
+_MADE = "standard output"
 
 
 @contextmanager
@@ -42,7 +43,8 @@ def piped(arguments: argparse.Namespace) -> Iterator[None]:
     with tempfile.TemporaryDirectory(prefix="trimotion-") as folder:
         for key in inputs:
             setattr(arguments, key, str(_received(Path(folder) / "standard input")))
-        made = Path(folder) / f"standard output{output[1:] or FORMAT}"
+        ending = output[1:] or FORMATS.get(arguments.command, ".mkv")
+        made = Path(folder) / f"{_MADE}{ending}"
         if writes:
             arguments.output = str(made)
         yield
@@ -50,6 +52,15 @@ def piped(arguments: argparse.Namespace) -> Iterator[None]:
             with made.open("rb") as file:
                 shutil.copyfileobj(file, sys.stdout.buffer)
             sys.stdout.buffer.flush()
+
+
+def shown_name(path: Path) -> Path:
+    """What a user calls an output.
+
+    Args:
+        path: The file that is written.
+    """
+    return Path(PIPE) if path.stem == _MADE else path
 
 
 def _received(path: Path) -> Path:
