@@ -13,6 +13,7 @@ from time import perf_counter
 import numpy as np
 
 from pipeline.drawing import Drawing, check_drawing
+from pipeline.expected import expected_frames
 from pipeline.followed import followed_shares
 from pipeline.job import Job
 from pipeline.past import Past, open_track, past_of
@@ -156,7 +157,7 @@ def _convert(job: Job, progress: Progress, *, draws: bool) -> Animated:
         weights = open_weights(job.weights, (info.width, info.height), job.frame_range)
         triangulator = _triangulator(job, info, device)
         drawing = Drawing(job, info, device) if draws else None
-        tally = _Tally(progress, _expected(job, info.frame_count))
+        tally = _Tally(progress, expected_frames(job.frame_range, info))
         notes = [] if past is None else past.notes
         found = _open_steps(decoder, weights, job, past, notes)
         with device, open_track(job, info, past) as track:
@@ -251,19 +252,10 @@ def _fitted(
     weights = open_weights(job.weights, (info.width, info.height), around)
     triangulator = _triangulator(job, info, device)
     wanted = {row.frame for row in rows}
-    with open_decoder(job.source, around) as decoder:
+    with open_decoder(job.source, around, read=job.read) as decoder:
         frames = (frame for frame in decoder if frame.index in wanted)
         for frame in weights.beside(frames):
             yield triangulator.fit(frame, track.snapshot(frame.index).mesh)
-
-
-def _expected(job: Job, frame_count: int | None) -> int | None:
-    """How many frames there will be, as far as can be told beforehand."""
-    wanted = job.frame_range
-    if frame_count is None or wanted.start_time is not None or wanted.end_time is not None:
-        return None
-    last = frame_count - 1 if wanted.last is None else min(wanted.last, frame_count - 1)
-    return max(0, (last - wanted.first) // wanted.step + 1)
 
 
 class _Tally:

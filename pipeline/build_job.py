@@ -8,6 +8,7 @@ from typing import Any
 
 from pipeline.job import Job
 from pipeline.member_spec import parse_member, parse_region
+from pipeline.output_name import output_in
 from stages.flows import FLOWS
 from stages.layouts import LAYOUTS
 from stages.media import FrameRange, parse_time
@@ -26,10 +27,11 @@ def build_job(given: Mapping[str, Any]) -> Job:
         MediaError: If a picture that an option names cannot be read.
     """
     values = dict(given)
-    values["source"], values["output"] = Path(given["source"]), Path(given["output"])
+    values["source"] = Path(given["source"])
+    values["output"] = output_in(given["output"], given["source"])
     values["frame_range"] = frame_range(given)
     if given.get("track") is not None:
-        values["track"] = Path(given["track"])
+        values["track"] = output_in(given["track"], given["source"], ".mtrk")
     if given.get("resume"):
         values["overwrite"] = True  # what is drawn from a track replaces what was drawn before
     for name, registry in (("layout", LAYOUTS), ("flow", FLOWS)):
@@ -75,7 +77,7 @@ def fill(cls: type, values: Mapping[str, Any]) -> Any:
 
 
 def _time(given: Mapping[str, Any], name: str) -> Fraction | None:
-    return parse_time(given[name]) if name in given else None
+    return parse_time(given[name], f"--{name}") if name in given else None
 
 
 def _check_cuts(cuts: str | None) -> None:

@@ -11,7 +11,7 @@ import sys
 import threading
 import traceback
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -46,7 +46,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     except SystemExit as request:
         return request.code if isinstance(request.code, int) else 2
     try:
-        with _terminable():
+        with _terminable(), _piped(arguments):
             COMMANDS[arguments.command](arguments)
             sys.stdout.flush()
     except BaseException as error:  # one place where every failure becomes a line and a code
@@ -54,6 +54,16 @@ def main(argv: Sequence[str] | None = None) -> int:
             traceback.print_exc()
         return _report(error, arguments)
     return 0
+
+
+def _piped(arguments: argparse.Namespace) -> AbstractContextManager[None]:
+    """Files in place of `-`, if a name is one."""
+    names = (getattr(arguments, key, None) or "" for key in ("source", "file", "output"))
+    if not any(name.startswith("-") for name in names):
+        return nullcontext()
+    from pipeline.pipes import piped
+
+    return piped(arguments)
 
 
 def run_animate(arguments: argparse.Namespace) -> None:
@@ -86,11 +96,11 @@ def run_solve(arguments: argparse.Namespace) -> None:
         if job.jobs > 1:
             from pipeline.parts import solve_in_parts
 
-            _tell(progress, solve_in_parts(job, progress), job.output)
+            _tell(progress, solve_in_parts(job, progress), job.track or job.output)
         else:
             from pipeline.animate import solve
 
-            _tell(progress, solve(job, progress), job.output)
+            _tell(progress, solve(job, progress), job.track or job.output)
 
 
 def run_render(arguments: argparse.Namespace) -> None:
@@ -223,13 +233,14 @@ def _progress(arguments: argparse.Namespace) -> "Progress":
 
 def _tell(progress: "Progress", result: "Animated", output: Path) -> None:
     """Tell what came of a run."""
+    from pipeline.pipes import shown_name
     from pipeline.progress import Summary
 
     for note in result.notes:
         progress.note(note)
     for warning in result.warnings:
         progress.warn(warning)
-    progress.finish(Summary(result.frames, result.seconds, result.mean_rmse, output))
+    progress.finish(Summary(result.frames, result.seconds, result.mean_rmse, shown_name(output)))
 
 
 def _report(error: BaseException, arguments: argparse.Namespace) -> int:
@@ -242,8 +253,12 @@ def _report(error: BaseException, arguments: argparse.Namespace) -> int:
     Returns:
         The exit code.
     """
-    from warp_kernels.errors import TrimotionError
+    from warp_kernels.errors import OptionError, TrimotionError
+    from warp_kernels.memory import MORE_MEMORY, is_limit_near, is_out_of_memory
 
+    # Under a limit libraries fail in ways of their own, and options that would fit do not.
+    if isinstance(error, OptionError) and is_limit_near():
+        return _fail(f"out of memory ({error}); {MORE_MEMORY}", 1)
     if isinstance(error, TrimotionError):
         return _fail(str(error), error.exit_code)
     if isinstance(error, KeyboardInterrupt):
@@ -254,9 +269,13 @@ def _report(error: BaseException, arguments: argparse.Namespace) -> int:
         # The reader of our output left. What is still buffered must not raise at exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 1
-    if isinstance(error, MemoryError):
-        return _fail("out of memory; try a smaller --scale, or a smaller source", 1)
     kind = type(error).__name__
+    if isinstance(error, Exception) and is_out_of_memory(error):
+        reason = "" if isinstance(error, MemoryError) else f" ({kind}: {error})"
+        return _fail(f"out of memory{reason}; {MORE_MEMORY}", 1)
+    if isinstance(error, OSError) and error.filename and error.strerror:
+        reason = error.strerror.lower()
+        return _fail(f"{error.filename}: {reason}; check the place, its rights and free space", 1)
     return _fail(f"internal error ({kind}: {error}); run again with --debug and report it", 1)
 
 
@@ -268,7 +287,9 @@ def _left_over(arguments: argparse.Namespace) -> str:
 
 
 def _fail(text: str, code: int) -> int:
-    print("trimotion: error: " + " ".join(text.split()), file=sys.stderr)
+    from pipeline.progress import tell
+
+    tell("trimotion: error: " + " ".join(text.split()), sys.stderr)
     return code
 
 

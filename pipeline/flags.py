@@ -4,6 +4,7 @@ import math
 import re
 from argparse import ArgumentTypeError
 from collections.abc import Callable
+from fractions import Fraction
 from typing import Any
 
 _SIZE = re.compile(r"(\d{1,9})[xX](\d{1,9})")
@@ -36,6 +37,20 @@ def real_number(text: str) -> float:
     return number
 
 
+def rate(text: str) -> Fraction:
+    """Read a number of frames a second, such as 24, 29.97 or 30000/1001.
+
+    Raises:
+        ArgumentTypeError: If the text has another form.
+    """
+    try:
+        return Fraction(text)
+    except (ValueError, ZeroDivisionError):
+        raise ArgumentTypeError(
+            f"{text!r} is not a rate; write one such as 24 or 30000/1001"
+        ) from None
+
+
 def size(text: str) -> tuple[int, int]:
     """Read a width and a height, such as 1280x720.
 
@@ -62,6 +77,7 @@ def text_value(text: str) -> str:
 _READERS: dict[str, Callable[[str], Any]] = {
     "int": whole_number,
     "float": real_number,
+    "Fraction": rate,
     "tuple[int, int]": size,
 }
 

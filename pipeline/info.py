@@ -96,7 +96,8 @@ def _rows(info: MediaInfo) -> list[tuple[str, str]]:
         ("colour", _color(info)),
     ]
     if info.frame_count is not None and info.kind != "image":
-        rows.append(("frames", str(info.frame_count)))
+        numbers = f", numbered from {info.first_frame}" if info.first_frame else ""
+        rows.append(("frames", f"{info.frame_count}{numbers}"))
     if info.average_rate is not None:
         rows.append(("rate", f"{float(info.average_rate):.6g} frames a second"))
     if info.duration is not None:
@@ -112,8 +113,10 @@ def _rows(info: MediaInfo) -> list[tuple[str, str]]:
 
 def _size(info: MediaInfo) -> str:
     text = f"{info.width}x{info.height} pixels"
-    if info.rotation:
-        text += f" (stored {info.coded_width}x{info.coded_height}, turned by {info.rotation})"
+    shown = [f"turned by {info.rotation}"] if info.rotation else []
+    shown += ["mirrored"] if info.mirrored else []
+    if shown:
+        text += f" (stored {info.coded_width}x{info.coded_height}, {', '.join(shown)})"
     if info.sample_aspect != 1:
         text += f", pixel aspect {info.sample_aspect}"
     return text

@@ -19,7 +19,7 @@ from stages.flows import Flow
 from stages.flows.dis import Dis
 from stages.layouts import Layout
 from stages.layouts.importance import Importance
-from stages.media import EncodeOptions, FrameRange
+from stages.media import EncodeOptions, FrameRange, ReadOptions
 from stages.regions import Region
 from stages.triangulate import TriangulateOptions
 from warp_kernels.color_model import CONSTANT, LINEAR, ColorModel
@@ -51,6 +51,8 @@ class Job:
     """What is written."""
     frame_range: FrameRange = field(default_factory=FrameRange)
     """The frames of the source that are converted."""
+    read: ReadOptions = field(default_factory=ReadOptions)
+    """How the source is read."""
     device: str = field(
         default="auto",
         metadata={"help": "where kernels run", "metavar": "auto|cpu|cuda:N"},

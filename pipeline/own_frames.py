@@ -112,7 +112,7 @@ def _available_without(frame: int, job: Job, info: MediaInfo) -> str | None:
         return None if frame in numbers else f"stills {numbers[0]} to {numbers[-1]}"
     if info.frame_count is not None and frame < info.frame_count:
         return None
-    count = count_frames(job.source)  # what the file declares is an estimate
+    count = count_frames(job.source, job.read)  # what the file declares is an estimate
     return None if frame < count else f"frames 0 to {count - 1}"
 
 
@@ -122,7 +122,8 @@ def _is_in_time(frame: int, job: Job) -> bool:
     if wanted.start_time is None and wanted.end_time is None:
         return True
     try:
-        with open_decoder(job.source, replace(wanted, first=frame, last=frame, step=1)) as decoder:
+        one = replace(wanted, first=frame, last=frame, step=1)
+        with open_decoder(job.source, one, read=job.read) as decoder:
             return next(decoder, None) is not None
     except OptionError:  # the decoder has no such frame at these times
         return False

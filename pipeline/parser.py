@@ -38,6 +38,10 @@ trimotion COMMAND --help tells the options of a command.
 """
 
 
+_SOURCE_ONLY = ("track", "resume", "fps", "page", "stream")
+"""Options that mean nothing once there is a track."""
+
+
 class OneLineParser(argparse.ArgumentParser):
     """A parser whose errors are one line that ends with a remedy."""
 
@@ -138,7 +142,7 @@ def _add_render(commands: Any) -> None:
     add_job_options(
         parser,
         lambda o: (
-            (o.group in ("range", "look", "output") and o.dest not in ("track", "resume"))
+            (o.group in ("range", "look", "output") and o.dest not in _SOURCE_ONLY)
             or o.dest in ("device", "threads")
         ),
     )

@@ -28,6 +28,7 @@ from pipeline.track.schema import ENDING
 from stages.media import FrameRange, probe
 from stages.media.commit import PendingFile
 from warp_kernels.errors import OptionError, OutputError, TrimotionError
+from warp_kernels.kernel_cache import settle_cache
 
 PATIENCE = 0.5
 """How often the processes are looked after [s]."""
@@ -60,7 +61,7 @@ def animate_in_parts(job: Job, progress: Progress) -> Animated:
     """
     begun = perf_counter()
     both = _Halves(progress)
-    info = probe(job.source)
+    info = probe(job.source, read=job.read)
     check_followed(job, info)
     check_drawing(job, info)
     if job.track is None and job.resume:
@@ -104,6 +105,7 @@ def solve_in_parts(job: Job, progress: Progress) -> Animated:
     if len(ranges) == 1:
         return solve(alone, progress)
     folder = _made_folder(job)
+    settle_cache()  # once for all processes
     crew = _Crew(job, ranges, folder, progress)
     with crew.at_work():
         crew.wait()

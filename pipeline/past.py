@@ -13,7 +13,7 @@ from pipeline.track.agreement import differing_flags
 from pipeline.track.header import plain_cuts
 from pipeline.track.schema import ENDING
 from stages.media import FrameRange, MediaInfo
-from stages.media.commit import output_error
+from stages.media.commit import output_error, remove_left_overs, true_place
 from stages.snapshot import Snapshot
 from stages.validate import InvalidMeshError, assert_valid
 from warp_kernels.errors import OptionError, OutputError, TrackError
@@ -132,8 +132,9 @@ def check_track_place(path: Path, job: Job) -> None:
     if job.resume and path.is_dir():
         raise TrackError(f"{path}: is a folder; give the name of a track")
     check_track_name(path)
-    if path.exists() and not (job.resume or job.encode.overwrite):
+    if os.path.lexists(path) and not (job.resume or job.encode.overwrite):
         raise OutputError(path, "exists already", "choose another name, --resume or --overwrite")
+    remove_left_overs(true_place(path).parent)
     probe = path.with_name(f".trimotion-{os.getpid()}.test")
     try:
         probe.touch()

@@ -5,6 +5,7 @@ from argparse import ArgumentTypeError
 from pathlib import Path
 
 from pipeline.options import Option, job_options
+from pipeline.text_file import read_text
 from warp_kernels.errors import OptionError
 
 SHIPPED = Path(__file__).parent / "presets"
@@ -30,7 +31,7 @@ def read_preset(name: str) -> dict[str, object]:
     """
     path = SHIPPED / f"{name}.toml" if name in shipped_presets() else Path(name)
     try:
-        table = tomllib.loads(path.read_text(encoding="utf-8"))
+        table = tomllib.loads(read_text(path))
     except OSError as error:
         raise OptionError(
             f"--preset {name}: cannot be read ({str(error.strerror).lower()}); give a TOML file "

@@ -3,12 +3,14 @@
 Everything for people goes to standard error, JSON lines go to standard output.
 """
 
+import contextlib
 import json
+import os
 import sys
 import time
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, TextIO
 
 PLAIN_INTERVAL = 2.0
 """Time between two plain lines [s]."""
@@ -101,7 +103,32 @@ class Progress:
         return done / max(time.perf_counter() - self._start, 1e-9)
 
     def _print(self, line: str) -> None:
-        print(line, file=sys.stderr, flush=True)
+        tell(line, sys.stderr)
+
+
+def tell(line: str, stream: TextIO) -> None:
+    """Print a line; nobody need be there any more to read it, and the work goes on.
+
+    Args:
+        line: The line.
+        stream: Standard output or standard error.
+    """
+    try:
+        print(line, file=stream, flush=True)
+    except OSError:
+        hush(stream)
+
+
+def hush(stream: TextIO) -> None:
+    """Let what is still to be written to a stream disappear: its reader has left.
+
+    Args:
+        stream: Standard output or standard error.
+    """
+    with contextlib.suppress(OSError, ValueError):
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, stream.fileno())
+        os.close(nowhere)
 
 
 class PlainProgress(Progress):
@@ -148,6 +175,12 @@ class BarProgress(Progress):
         self._move(done, total, f"rmse {rmse:.2f}")
 
     def _move(self, done: int, total: int | None, figures: str) -> None:
+        try:
+            self._draw(done, total, figures)
+        except OSError:
+            hush(sys.stderr)  # the terminal is gone
+
+    def _draw(self, done: int, total: int | None, figures: str) -> None:
         if self._bar is None:
             from tqdm import tqdm  # only a terminal needs it
 
@@ -208,7 +241,7 @@ class JsonProgress(Progress):
         )
 
     def _write(self, event: str, **values: object) -> None:
-        print(json.dumps({"event": event, **values}), flush=True)
+        tell(json.dumps({"event": event, **values}), sys.stdout)
 
 
 PROGRESS: dict[str, type[Progress]] = {

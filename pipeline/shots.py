@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from pipeline.text_file import read_text
 from stages.frame import Frame
 from stages.metrics import Signature, change, likeness, signature
 from warp_kernels.errors import MediaError, OptionError
@@ -45,7 +46,7 @@ def read_cuts(path: Path) -> frozenset[int]:
     """
     remedy = "list the first frame of each new shot, as JSON [40, 76] or one number a line"
     try:
-        text = path.read_text(encoding="utf-8")
+        text = read_text(path)
     except (OSError, UnicodeDecodeError) as error:
         raise MediaError(path, f"the list of cuts cannot be read ({error})", remedy) from error
     try:

@@ -26,5 +26,6 @@ def source_pictures(job: Job, rows: Sequence[FrameRow]) -> Iterator[np.ndarray |
         yield from (None for _ in rows)
         return
     wanted = {row.frame for row in rows}
-    with open_decoder(job.source, FrameRange(rows[0].frame, rows[-1].frame)) as decoder:
+    around = FrameRange(rows[0].frame, rows[-1].frame)
+    with open_decoder(job.source, around, read=job.read) as decoder:
         yield from (frame.pixels for frame in decoder if frame.index in wanted)

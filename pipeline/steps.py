@@ -60,7 +60,7 @@ def open_around(job: Job, reached: Reached | None) -> Decoder:
     if reached is not None and reached.frame >= wanted.first:
         last = None if wanted.last is None else max(wanted.last, reached.frame)
         wanted = replace(wanted, first=reached.frame, last=last)
-    return open_decoder(job.source, wanted, margin=(BEFORE, AHEAD))
+    return open_decoder(job.source, wanted, margin=(BEFORE, AHEAD), read=job.read)
 
 
 def steps(

@@ -9,6 +9,8 @@ import av
 import numpy as np
 from av.video.reformatter import Interpolation
 
+from stages.media.channels import channels_of
+
 FLAGS = int(Interpolation.BICUBIC | Interpolation.ACCURATE_RND | Interpolation.FULL_CHR_H_INT)
 MILLISECOND = Fraction(1, 1000)
 CHART = np.array(
@@ -56,6 +58,7 @@ def write_video(
     pixel_format: str = "yuv420p",
     matrix: str | None = None,
     rotation: int = 0,
+    way: tuple[int, int, int, int] | None = None,
     aspect: Fraction | None = None,
     options: dict[str, str] | None = None,
     sound: int = 0,
@@ -65,7 +68,8 @@ def write_video(
     """Write pictures as a video, one every 1/25 s unless `pts` says otherwise.
 
     `matrix` tags the colours (`bt709` or `bt601`); without it they are stored as BT.601 and
-    left untagged. `sound` is the number of seconds of a rising tone.
+    left untagged. `way` says that a stored point (x, y) is shown at (a x + c y, b x + d y).
+    `sound` is the number of seconds of a rising tone.
     """
     times = pts or [round(Fraction(n, 25) / time_base) for n in range(len(pictures))]
     muxer = {"video_track_timescale": str(time_base.denominator)}
@@ -81,6 +85,9 @@ def write_video(
             stream.codec_context.color_range = 1
         if rotation:
             stream.set_display_rotation(rotation)
+        if way is not None:
+            a, b, c, d = (value * 2**16 for value in way)
+            stream.set_display_matrix((a, b, 0, c, d, 0, 0, 0, 2**30))
         audio = output.add_stream(audio_codec, rate=48000) if sound else None
         for pixels, time in zip(pictures, times, strict=True):
             frame = av.VideoFrame.from_ndarray(pixels, format="rgb24").reformat(
@@ -95,6 +102,20 @@ def write_video(
         output.mux(stream.encode(None))
         if audio is not None:
             _write_tone(output, audio, sound, sound_start)
+    return path
+
+
+def trim(path: Path, start: Fraction, seconds: Fraction) -> Path:
+    """Let an mp4 show a part of itself only, by its edit lists, as editors on phones do."""
+    content = bytearray(path.read_bytes())
+    (movie,) = struct.unpack_from(">I", content, content.index(b"mvhd") + 16)
+    place = 0
+    while (place := content.find(b"elst", place)) >= 0:
+        (track,) = struct.unpack_from(">I", content, content.index(b"mdhd", place) + 16)
+        first = struct.unpack_from(">i", content, place + 16)[0] + round(start * track)
+        struct.pack_into(">Ii", content, place + 12, round(seconds * movie), first)
+        place += 4
+    path.write_bytes(content)
     return path
 
 
@@ -116,6 +137,59 @@ def write_sound(path: Path, seconds: int = 1) -> Path:
     with av.open(str(path), "w") as output:
         _write_tone(output, output.add_stream("aac", rate=48000), seconds, Fraction(0))
     return path
+
+
+def add_tones(
+    video: Path, path: Path, layout: str, codec: str = "pcm_s16le", rate: int = 48000
+) -> Path:
+    """Put half a second of sound beside a video's pictures: channel n hums at 30 (n + 1) Hz."""
+    count = av.AudioLayout(layout).nb_channels
+    t = np.arange(rate // 2) / rate
+    waves = 0.1 * np.sin(2 * np.pi * 30 * np.arange(1, count + 1)[:, None] * t)
+    samples = np.ascontiguousarray((waves * 32767).astype(np.int16).T).reshape(1, -1)
+    with av.open(str(video)) as source, av.open(str(path), "w") as output:
+        shown = output.add_stream_from_template(source.streams.video[0])
+        sound = output.add_stream(codec, rate=rate)
+        sound.codec_context.layout = layout
+        for packet in source.demux(video=0):
+            if packet.size:
+                packet.stream = shown
+                output.mux(packet)
+        for first in range(0, rate // 2, 960):
+            block = samples[:, first * count : (first + 960) * count]
+            frame = av.AudioFrame.from_ndarray(block, "s16", layout)
+            frame.sample_rate, frame.pts, frame.time_base = rate, first, Fraction(1, rate)
+            output.mux(sound.encode(frame))
+        output.mux(sound.encode(None))
+    return path
+
+
+def set_order(path: Path, tag: int) -> Path:
+    """Change the order of channels that a mov file states to one of Apple's numbered ones."""
+    content = path.read_bytes()
+    place = content.index(b"chan") + 8
+    path.write_bytes(content[:place] + struct.pack(">II", tag, 0) + content[place + 8 :])
+    return path
+
+
+def loudest_tones(path: Path) -> dict[str, int]:
+    """Which tone of `add_tones` is the loudest in every channel, by its name."""
+    blocks: list[np.ndarray] = []
+    names: tuple[str, ...] = ()
+    packed = av.AudioResampler("flt")  # PyAV reads past the end of eight planes
+    with av.open(str(path)) as source:
+        for packet in source.demux(audio=0):
+            for frame in packet.decode():
+                channels_of(frame)  # else PyAV frees a custom order twice
+                for made in packed.resample(frame):
+                    channels_of(made)
+                    names = tuple(channel.name for channel in made.layout.channels)
+                    blocks.append(made.to_ndarray().reshape(-1, len(names)).T)
+                    rate = made.sample_rate
+    wave = np.concatenate(blocks, axis=1)[:, 2000:-2000]
+    heard = np.abs(np.fft.rfft(wave * np.hanning(wave.shape[1])))
+    peaks = np.argmax(heard, axis=1) * rate / wave.shape[1]
+    return {name: round(peak / 30) - 1 for name, peak in zip(names, peaks, strict=True)}
 
 
 def sound_packets(path: Path) -> list[tuple[Fraction, bytes]]:

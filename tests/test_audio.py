@@ -1,14 +1,17 @@
 """Sound on its way from the source to the output."""
 
+import subprocess
+import sys
 from fractions import Fraction
 from pathlib import Path
 
 import av
 import media_samples as samples
 import pytest
-from test_encode import convert
+from test_encode import ROOT, convert
 
-from stages.media import EncodeOptions, FrameRange, probe
+from stages.media import EncodeOptions, FrameRange, check_output, probe
+from warp_kernels.errors import OptionError
 
 
 def clip_with_sound(folder: Path, seconds: int = 1, **how: object) -> Path:
@@ -72,3 +75,112 @@ def test_silent_formats_say_so(tmp_path: Path, name: str) -> None:
     source = clip_with_sound(tmp_path)
     notes = convert(source, tmp_path / name)
     assert any("audio is left out" in note for note in notes)
+
+
+def with_tones(folder: Path, name: str, layout: str, codec: str = "pcm_s16le") -> Path:
+    """A clip whose every channel has a tone of its own."""
+    plain = samples.write_video(
+        folder / "plain.mp4", [samples.picture(64, 48, n) for n in range(9)]
+    )
+    return samples.add_tones(plain, folder / name, layout, codec)
+
+
+CUSTOM = {"5.1": 122 << 16 | 6, "6.1": 125 << 16 | 7, "7.1": 128 << 16 | 8}
+"""Apple's numbers of orders that FFmpeg holds as custom ones: MPEG 5.1 B, 6.1 A and 7.1 C."""
+
+
+@pytest.mark.parametrize("layout", CUSTOM)
+def test_sound_of_a_custom_order_is_told_and_left_alone(tmp_path: Path, layout: str) -> None:
+    """PyAV 18.1 frees the order of such a sound twice, and the process aborted."""
+    source = samples.set_order(with_tones(tmp_path, "in.mov", layout), CUSTOM[layout])
+    script = (
+        "import sys, gc\n"
+        "from stages.media import probe\n"
+        "for _ in range(3): print(probe(sys.argv[1]).audio_channels); gc.collect()\n"
+    )
+    run = [sys.executable, "-c", script, str(source)]
+    told = subprocess.run(run, capture_output=True, text=True, cwd=ROOT)
+    count = av.AudioLayout(layout).nb_channels
+    assert (told.returncode, told.stdout.split()) == (0, [str(count)] * 3)
+
+
+@pytest.mark.parametrize("custom", [False, True])
+@pytest.mark.parametrize("layout", CUSTOM)
+@pytest.mark.parametrize("ending", ["webm", "mp4", "mkv", "mov"])
+def test_channels_arrive_where_they_belong(
+    tmp_path: Path, layout: str, ending: str, custom: bool
+) -> None:
+    """Copied, converted, mixed down or up: the front and the bass keep their places."""
+    source = with_tones(tmp_path, "in.mov", layout)
+    if custom:
+        samples.set_order(source, CUSTOM[layout])
+    before = samples.loudest_tones(source)
+    convert(source, tmp_path / f"out.{ending}")
+    after = samples.loudest_tones(tmp_path / f"out.{ending}")
+    if "NONE" in after:  # Matroska states no order; FFmpeg's own is understood
+        assert not custom
+        return
+    common = before if set(before) == set(after) else ("FL", "FR", "FC", "LFE")
+    assert {name: after[name] for name in common} == {name: before[name] for name in common}
+
+
+@pytest.mark.parametrize(
+    ("layout", "ending", "expected"),
+    [
+        ("6.1", "webm", 8),
+        ("7.1", "webm", 8),
+        ("quad", "webm", 4),
+        ("5.0", "webm", 6),
+        ("6.1", "mov", 6),
+        ("7.1", "mov", 6),
+        ("2.1", "mov", 3),
+    ],
+)
+def test_many_channels_are_carried_or_mixed_down(
+    tmp_path: Path, layout: str, ending: str, expected: int
+) -> None:
+    """Opus takes up to eight channels, AAC six that every player knows; a note tells of a mix."""
+    source = with_tones(tmp_path, "in.mkv", layout, "flac")
+    notes = convert(source, tmp_path / f"out.{ending}")
+    written = probe(tmp_path / f"out.{ending}")
+    assert written.audio_channels == expected
+    mixed = expected < av.AudioLayout(layout).nb_channels
+    assert any("mixed down" in note for note in notes) == mixed
+
+
+@pytest.mark.parametrize(("mode", "codec"), [("auto", "aac"), ("copy", "pcm_s16le")])
+def test_camera_sound_in_mp4(tmp_path: Path, mode: str, codec: str) -> None:
+    """Uncompressed sound in mp4 plays nearly nowhere: AAC, unless a copy is asked for."""
+    source = with_tones(tmp_path, "in.mov", "stereo")
+    convert(source, tmp_path / "out.mp4", EncodeOptions(audio_mode=mode))
+    assert probe(tmp_path / "out.mp4").audio_codec == codec
+
+
+def test_what_cannot_be_copied_is_told_at_once(tmp_path: Path) -> None:
+    """Before any picture is made."""
+    source = with_tones(tmp_path, "in.mkv", "stereo", "flac")
+    info, options = probe(source), EncodeOptions(audio_mode="copy")
+    with pytest.raises(OptionError, match=r"--audio copy: webm cannot hold flac"):
+        check_output(tmp_path / "out.webm", info, (64, 48), options)
+
+
+def test_sound_that_changes_its_channels_goes_on(tmp_path: Path) -> None:
+    """Stereo that becomes mono in the middle is converted throughout."""
+    parts = [with_tones(tmp_path, f"{n}.ts", n, "mp2") for n in ("stereo", "mono")]
+    joined = tmp_path / "in.ts"
+    joined.write_bytes(b"".join(part.read_bytes() for part in parts))
+    convert(joined, tmp_path / "out.webm")
+    times = [time for time, _ in samples.sound_packets(tmp_path / "out.webm")]
+    assert Fraction(8, 10) < times[-1] < Fraction(11, 10)
+
+
+@pytest.mark.parametrize("ending", ["mp4", "mkv", "webm"])
+def test_sound_of_a_trimmed_clip_is_trimmed(tmp_path: Path, ending: str) -> None:
+    """What an edit list hides, a second at either end, is not carried into the output."""
+    pictures = [samples.picture(64, 48, n) for n in range(75)]
+    source = samples.write_video(tmp_path / "in.mp4", pictures, sound=3)
+    samples.trim(source, Fraction(1), Fraction(1))
+    convert(source, tmp_path / f"out.{ending}")
+    times = [float(time) for time, _ in samples.sound_packets(tmp_path / f"out.{ending}")]
+    assert times[0] >= -0.13
+    assert 0.9 < times[-1] < 1.1

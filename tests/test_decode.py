@@ -9,7 +9,14 @@ import numpy as np
 import pytest
 
 from stages.frame import Frame
-from stages.media import FrameRange, open_decoder, probe
+from stages.media import (
+    EncodeOptions,
+    FrameRange,
+    count_frames,
+    open_decoder,
+    open_encoder,
+    probe,
+)
 from warp_kernels.errors import MediaError, OptionError
 
 
@@ -230,3 +237,66 @@ def test_missing_still_is_named(tmp_path: Path) -> None:
     with pytest.raises(MediaError, match=r"s_0003\.png: is missing"):
         frames_of(tmp_path / "s_%04d.png")
     assert len(frames_of(tmp_path / "s_%04d.png", FrameRange(0, 2))) == 2
+
+
+@pytest.mark.parametrize("codec", ["libvpx", "libvpx-vp9"])
+@pytest.mark.parametrize("ending", ["webm", "mkv"])
+def test_transparent_vp8_and_vp9(tmp_path: Path, codec: str, ending: str) -> None:
+    """FFmpeg's own decoders leave the transparency out: what is hidden would be shown."""
+    path = tmp_path / f"a.{ending}"
+    with av.open(str(path), "w") as output:
+        stream = output.add_stream(codec, rate=25, options={"crf": "10", "b": "1M"})
+        stream.width, stream.height, stream.pix_fmt = 64, 48, "yuva420p"
+        stream.codec_context.options = {"auto-alt-ref": "0"}
+        for number in range(5):
+            pixels = np.zeros((48, 64, 4), np.uint8)
+            pixels[:, :, 0] = 200
+            pixels[:, 8 * number + 8 :, 3] = 255
+            frame = av.VideoFrame.from_ndarray(pixels, format="rgba").reformat(format="yuva420p")
+            frame.pts, frame.time_base = number, Fraction(1, 25)
+            output.mux(stream.encode(frame))
+        output.mux(stream.encode(None))
+    with open_decoder(path) as decoder:
+        frames = list(decoder)
+    assert any("transparent" in note for note in decoder.notes)
+    assert [frame.pts for frame in frames] == [0, 40, 80, 120, 160]
+    for number, frame in enumerate(frames):
+        edge = 8 * number + 8
+        assert (frame.pixels[:, : edge - 4] > 240).all()
+        assert (frame.pixels[:, edge + 4 :, 1:] < 30).all()
+
+
+def test_our_own_transparent_webm_comes_back(tmp_path: Path) -> None:
+    """What is written with transparency is read with it."""
+    info = probe(samples.write_video(tmp_path / "in.mp4", clip(3)))
+    path = tmp_path / "a.webm"
+    pixels = np.dstack([samples.picture(64, 48), np.zeros((48, 64), np.uint8)])
+    with open_encoder(path, info, (64, 48), EncodeOptions()) as encoder:
+        for number in range(3):
+            encoder.write(pixels, number, Fraction(1, 25))
+    for frame in frames_of(path):
+        assert (frame.pixels > 250).all()
+
+
+@pytest.mark.parametrize(("start", "seconds"), [(5, 20), (13, 12), (20, 50), (0, 7)])
+def test_trimmed_clips_have_what_a_player_shows(tmp_path: Path, start: int, seconds: int) -> None:
+    """Edit lists hide frames that the file declares; nothing breaks off, and no count is wrong."""
+    path = samples.write_video(tmp_path / "a.mp4", clip(50), options={"g": "10"})
+    whole = frames_of(path)
+    samples.trim(path, Fraction(start, 25), Fraction(seconds, 25))
+    shown = min(seconds, 50 - start)
+    with open_decoder(path) as decoder:
+        frames = list(decoder)
+        assert not decoder.warnings
+    assert (probe(path).frame_count, count_frames(path), len(frames)) == (shown,) * 3
+    assert np.array_equal(frames[-1].pixels, whole[start + shown - 1].pixels)
+
+
+def test_a_frame_of_a_trimmed_clip_is_reached_by_its_number(tmp_path: Path) -> None:
+    """Hidden frames do not count."""
+    path = samples.write_video(tmp_path / "a.mp4", clip(420), options={"g": "50"})
+    samples.trim(path, Fraction(30, 25), Fraction(380, 25))
+    expected = next(frame for frame in frames_of(path) if frame.index == 345)
+    (frame,) = frames_of(path, FrameRange(345, 345))
+    assert (frame.index, frame.pts) == (345, expected.pts)
+    assert np.array_equal(frame.pixels, expected.pixels)

@@ -1,7 +1,9 @@
 """Written files: exact times, sizes, formats, and nothing half-finished under a name."""
 
+import re
 import subprocess
 import sys
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
@@ -9,6 +11,7 @@ import av
 import media_samples as samples
 import numpy as np
 import pytest
+from PIL import Image
 
 from stages.media import (
     EncodeOptions,
@@ -19,6 +22,7 @@ from stages.media import (
     open_encoder,
     probe,
 )
+from stages.media.commit import PendingFile, output_error
 from warp_kernels.errors import OptionError, OutputError
 
 WHOLE = FrameRange()
@@ -183,10 +187,10 @@ def test_jpeg_colours(clip: Path) -> None:
 
 
 def test_gif(clip: Path) -> None:
-    """A GIF has every frame, in hundredths of a second, in nearly the right colours."""
+    """A GIF has every frame there is time for, in hundredths of a second, nearly as coloured."""
     target = clip.with_name("out.gif")
     convert(clip, target, EncodeOptions(audio=False))
-    assert times_of(target) == [Fraction(n, 100) for n in (0, 4, 9, 10, 40, 44)]
+    assert times_of(target) == [Fraction(n, 100) for n in (0, 4, 9, 11, 40, 44)]
     with open_decoder(clip) as a, open_decoder(target) as b:
         assert np.abs(next(a).pixels.astype(int) - next(b).pixels).mean() < 4
 
@@ -344,3 +348,128 @@ def test_file_that_cannot_grow(tmp_path: Path, ending: str) -> None:
     done = subprocess.run(script, cwd=ROOT, timeout=60, capture_output=True, text=True)
     assert done.returncode == OutputError.exit_code, done.stderr
     assert sorted(tmp_path.iterdir()) == before
+
+
+@pytest.mark.parametrize("rate", [24, 25, 30, 48, 50, 60, 100, 120, Fraction(60000, 1001)])
+def test_gif_lasts_as_long_as_its_source(tmp_path: Path, rate: Fraction) -> None:
+    """No delay is under 2/100 s, which players show as 10/100; frames are dropped evenly."""
+    base = 1 / Fraction(rate)
+    info = replace(
+        probe(samples.write_still(tmp_path / "a.png", samples.picture(64, 48))),
+        average_rate=Fraction(rate),
+    )
+    count = round(rate)
+    with open_encoder(tmp_path / "a.gif", info, (64, 48), EncodeOptions()) as encoder:
+        for number in range(count):
+            encoder.write(samples.picture(64, 48, number), number, base)
+    with Image.open(tmp_path / "a.gif") as picture:
+        delays = []
+        for page in range(picture.n_frames):
+            picture.seek(page)
+            delays.append(picture.info["duration"])
+    assert min(delays) >= 20
+    assert max(delays) - min(delays) <= 10
+    assert abs(sum(delays) - 1000 * count * base) <= 10
+    dropped = count - len(delays)
+    assert (dropped > 0) == (rate > 50)
+    assert any(f"{dropped} are left out" in note for note in encoder.notes) == (rate > 50)
+
+
+def test_gif_of_a_burst_of_frames(tmp_path: Path) -> None:
+    """Frames of uneven times: the last of a burst is not lost for longer than a moment."""
+    info = probe(samples.write_still(tmp_path / "a.png", samples.picture(64, 48)))
+    times = [0, 1, 2, 3, 500, 501, 502, 1000]
+    with open_encoder(tmp_path / "a.gif", info, (64, 48), EncodeOptions()) as encoder:
+        for number, time in enumerate(times):
+            encoder.write(samples.picture(64, 48, number), time, samples.MILLISECOND)
+    shown = [0, 2, 50, 52, 100]
+    assert times_of(tmp_path / "a.gif") == [Fraction(time, 100) for time in shown]
+
+
+@pytest.fixture
+def linked(clip: Path) -> tuple[Path, Path]:
+    """A link to a file in another folder, and that file's name; there is no such file yet."""
+    folder = clip.parent / "other"
+    folder.mkdir()
+    link = clip.with_name("link.mp4")
+    link.symlink_to(Path("other") / "true.mp4")
+    return link, folder / "true.mp4"
+
+
+def test_a_link_is_written_through(clip: Path, linked: tuple[Path, Path]) -> None:
+    """The link stays, what it points to is replaced, and the temporary file lies there."""
+    link, true = linked
+    true.write_bytes(b"before")
+    assert PendingFile(link).path.parent.samefile(true.parent)
+    with pytest.raises(OutputError, match="exists already"):
+        convert(clip, link)
+    assert true.read_bytes() == b"before"
+    with open_encoder(link, probe(clip), (64, 48), EncodeOptions(overwrite=True)) as encoder:
+        for time in (0, 40):
+            encoder.write(samples.picture(64, 48), time, samples.MILLISECOND)
+    assert link.is_symlink()
+    assert list(true.parent.iterdir()) == [true]
+    assert len(times_of(true)) == 2
+
+
+def test_a_link_that_leads_nowhere(clip: Path, linked: tuple[Path, Path]) -> None:
+    """It is not replaced without being asked, and then makes the file it names."""
+    link, true = linked
+    with pytest.raises(OutputError, match="exists already"):
+        convert(clip, link)
+    convert(clip, link, EncodeOptions(overwrite=True))
+    assert link.is_symlink()
+    assert times_of(true) == times_of(clip)
+
+
+@pytest.mark.parametrize("name", ["a.png", "s_##.png"])
+def test_links_of_stills(clip: Path, name: str) -> None:
+    """Chains of links, for a single still and for numbered ones."""
+    folder = clip.parent / "other"
+    folder.mkdir()
+    written = clip.with_name(name.replace("##", "00"))
+    written.symlink_to("second.png")
+    clip.with_name("second.png").symlink_to(folder / "true.png")
+    still = FrameRange(0, 0)
+    with pytest.raises(OutputError, match="exists already"):
+        convert(clip, clip.with_name(name), wanted=still)
+    convert(clip, clip.with_name(name), EncodeOptions(overwrite=True), still)
+    assert written.is_symlink()
+    assert not (folder / "true.png").is_symlink()
+
+
+def test_links_that_cannot_be_written(clip: Path) -> None:
+    """To a missing folder, in a circle, to the input, to a device."""
+    overwrite = EncodeOptions(overwrite=True)
+    circle, away, own, device = (clip.with_name(f"{name}.mp4") for name in "abcd")
+    circle.symlink_to(circle.name)
+    away.symlink_to("nowhere/a.mp4")
+    own.symlink_to(clip.name)
+    device.symlink_to("/dev/null")
+    for link in (circle, away, own, device):
+        with pytest.raises(OutputError):
+            convert(clip, link, overwrite)
+        assert link.is_symlink()
+
+
+def test_what_killed_runs_left_is_removed(clip: Path) -> None:
+    """Temporary files of dead processes of this machine, and of nobody else."""
+    live = PendingFile(clip).path
+    (dead,) = (live.with_name(re.sub(r"-\d+-", "-999999999-", live.name)),)
+    foreign = live.with_name(".trimotion-elsewhere-999999999-0123456789ab.part")
+    other = live.with_name(".trimotion-notes")
+    for path in (live, dead, foreign, other):
+        path.write_bytes(b"x")
+    (dead.with_suffix(".mtrk.parts")).mkdir()
+    convert(clip, clip.with_name("out.mp4"))
+    left = {entry.name for entry in clip.parent.iterdir() if entry.name.startswith(".")}
+    assert left == {live.name, foreign.name, other.name}
+
+
+def test_lack_of_memory_is_told_as_such(clip: Path) -> None:
+    """Not as a matter of rights, whether Python or the system says so."""
+    for error in (MemoryError(), OSError(12, "Cannot allocate memory")):
+        told = str(output_error(clip, error))
+        assert "out of memory" in told
+        assert "ulimit" in told
+        assert "rights" not in told

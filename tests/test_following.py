@@ -161,7 +161,7 @@ def test_masks_of_several_frames_take_turns(clip: Path, track: Path, tmp_path: P
         mask = np.zeros((SHAPE[1], SHAPE[0], 3), np.uint8)
         mask[:, : 12 * frame] = 255
         write_png(tmp_path / f"m_{frame}.png", mask)
-    name = str(tmp_path / "m_#.png")
+    name = str(tmp_path / "m_%01d.png")
     alone = {
         key: frames("render", track, tmp_path / str(key), "--region", f"{name}@{key}:{RED}")
         for key in (1, 5, 8)
@@ -220,7 +220,7 @@ def test_name_of_a_mask_may_hold_the_sign(tmp_path: Path) -> None:
     assert parse_region("--region", "a@9,2:flat", STYLES).frames == (2, 9)
 
 
-@pytest.mark.parametrize("name", ["mask.png", "gap_#.png"])
+@pytest.mark.parametrize("name", ["mask.png", "gap_%01d.png"])
 @pytest.mark.parametrize("slip", ["1-2", "-1", "", "1,", "x"])
 def test_slips_after_the_sign_are_no_names(name: str, slip: str, clip: Path) -> None:
     """Of a mask that is there they are told how frames are written."""
@@ -292,14 +292,14 @@ def test_nothing_is_drawn_from_stale_memory(clip: Path, tmp_path: Path) -> None:
     ("command", "flags", "named"),
     [
         ("render", ("{mask}@50:flat",), "mask.png@50: no frame 50 was solved, only frames 0 to 11"),
-        ("render", ("{gap}@2:flat",), "gap_#.png@2: "),
+        ("render", ("{gap}@2:flat",), "gap_%01d.png@2: "),
         ("animate", ("{mask}@50:flat",), "no frame 50"),
         ("animate", ("{mask}@2:flat", "--frames", "3-5"), "no frame 2"),
         ("animate", ("{mask}@2:flat", "--frames", "1-5x2"), "no frame 2"),
         ("animate", ("{mask}@2:flat", "--independent"), "--independent"),
         ("animate", ("{mask}@0:flat", "--start", "0.05", "--end", "0.15"), "mask.png@0: frame 0"),
         ("animate", ("{mask}@4:flat", "--start", "0.05", "--end", "0.15"), "mask.png@4: frame 4"),
-        ("animate", ("{gap}@1,2:flat",), "gap_#.png@2: has no mask for frame 2"),
+        ("animate", ("{gap}@1,2:flat",), "gap_%01d.png@2: has no mask for frame 2"),
         ("animate", ("{short}@1,2:flat",), "short.mp4@2: has no mask for frame 2"),
         ("animate", ("{small}@2:flat",), "small.png@2: the mask is 48x64"),
         ("animate", ("no_such.png@2:flat",), "--region no_such.png@2: "),
@@ -320,7 +320,7 @@ def test_mistakes_are_one_line(
     """What is wrong and what may be done instead, before anything is solved; nothing is left."""
     begun: list[Job] = []
     monkeypatch.setattr(parts, "solve_in_parts", lambda job, progress: begun.append(job))
-    names = {"mask": "mask.png", "gap": "gap_#.png", "short": "short.mp4", "small": "small.png"}
+    names = {"mask": "mask.png", "gap": "gap_%01d.png", "short": "short.mp4", "small": "small.png"}
     masks = {key: clip.with_name(name) for key, name in names.items()}
     text = [flag.format(**masks) for flag in flags]
     source = str(track if command == "render" else clip)

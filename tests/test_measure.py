@@ -121,7 +121,7 @@ def test_stills_are_matched_by_order(tmp_path: Path) -> None:
     source = write_clip(tmp_path / "a.mkv", [gray(50)] * 3, [0, 3, 7])
     for number in range(3):
         write_still(tmp_path / f"s_{number}.png", gray(51))
-    assert measure(source, tmp_path / "s_#.png", WHOLE).rmse == pytest.approx(1.0)
+    assert measure(source, tmp_path / "s_%01d.png", WHOLE).rmse == pytest.approx(1.0)
 
 
 @pytest.mark.parametrize(("before", "after"), [(3, 5), (5, 3)])

@@ -147,11 +147,11 @@ def test_no_stills_of_a_pattern(tmp_path: Path) -> None:
 def test_damaged_still_of_a_sequence_is_left_out(tmp_path: Path) -> None:
     """One bad still does not cost the others."""
     for number in range(3):
-        samples.write_still(tmp_path / f"s_{number}.png", samples.picture(16, 8))
-    (tmp_path / "s_1.png").write_bytes(b"\x89PNG\r\n\x1a\nbroken")
-    with open_decoder(tmp_path / "s_#.png") as decoder:
+        samples.write_still(tmp_path / f"s_{number:02}.png", samples.picture(16, 8))
+    (tmp_path / "s_01.png").write_bytes(b"\x89PNG\r\n\x1a\nbroken")
+    with open_decoder(tmp_path / "s_##.png") as decoder:
         assert [frame.index for frame in decoder] == [0, 2]
-    assert any("s_1.png" in warning for warning in decoder.warnings)
+    assert any("s_01.png" in warning for warning in decoder.warnings)
 
 
 def test_errors_name_file_problem_and_remedy() -> None:

@@ -2,10 +2,14 @@
 
 import io
 import json
+import os
+import subprocess
 import sys
 from pathlib import Path
 
+import media_samples as samples
 import pytest
+from test_encode import ROOT
 
 from pipeline.progress import (
     PROGRESS,
@@ -16,6 +20,7 @@ from pipeline.progress import (
     Summary,
     open_progress,
 )
+from stages.media import probe
 
 SUMMARY = Summary(frames=3, seconds=1.5, mean_rmse=20.25, output=Path("out.mp4"))
 
@@ -118,3 +123,18 @@ def test_summary_of_nothing_divides_by_nothing() -> None:
     """A job of no time has no frame rate."""
     assert Summary(1, 0.0, 0.0, Path("a.png")).fps == 0.0
     assert str(Summary(1, 1.0, 0.0, Path("a.png"))).startswith("1 frame in")
+
+
+@pytest.mark.parametrize("how", ["json", "plain"])
+def test_the_film_is_made_though_nobody_reads(tmp_path: Path, how: str) -> None:
+    """The reader of the progress leaves at once, as `head -1` does: nothing is lost by it."""
+    clip = samples.write_video(tmp_path / "in.mp4", [samples.picture(64, 48, n) for n in range(12)])
+    target = tmp_path / "out.mp4"
+    command = [sys.executable, "-m", "pipeline.cli", "animate", str(clip), "-o", str(target)]
+    command += ["--triangles", "20", "--iterations", "2", "--progress", how]
+    reading, writing = os.pipe()
+    os.close(reading)
+    with open(writing, "wb") as closed:
+        done = subprocess.run(command, stdout=closed, stderr=closed, cwd=ROOT)
+    assert done.returncode == 0
+    assert probe(target).frame_count == 12

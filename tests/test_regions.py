@@ -36,7 +36,7 @@ def half(columns: slice) -> np.ndarray:
 def drawn(track: Path, folder: Path, *look: str) -> dict[int, np.ndarray]:
     """Frames of a look, as RGB."""
     folder.mkdir()
-    out = ["-o", str(folder / "f_#.png"), "--progress", "none"]
+    out = ["-o", str(folder / "f_%01d.png"), "--progress", "none"]
     assert main(["render", str(track), *out, *look]) == 0
     return {
         int(path.stem[-1]): cv2.imread(str(path))[..., ::-1].astype(int)
@@ -63,7 +63,7 @@ def test_moving_mask_belongs_to_its_frame(track: Path, tmp_path: Path) -> None:
     """Numbered stills, also where the range begins later; over a region lies the next one."""
     for number in range(4):
         write_png(tmp_path / f"m_{number}.png", half(slice(10 * number, 10 * number + 20)))
-    region = ["--region", f"{tmp_path / 'm_#.png'}:{RED}"]
+    region = ["--region", f"{tmp_path / 'm_%01d.png'}:{RED}"]
     write_png(
         tmp_path / "top.png",
         half(slice(0, 96))[:, :, ::-1] * (np.arange(64) < 8)[:, None, None].astype(np.uint8),
@@ -114,7 +114,7 @@ def test_mistakes_are_one_line(
     write_png(tmp_path / "small.png", np.zeros((30, 40, 3), np.uint8))
     for number in range(2):
         write_png(tmp_path / f"few_{number}.png", half(slice(0, 9)))
-    names = {"mask": "mask.png", "small": "small.png", "few": "few_#.png"}
+    names = {"mask": "mask.png", "small": "small.png", "few": "few_%01d.png"}
     text = spec.format(**{key: tmp_path / name for key, name in names.items()})
     out = tmp_path / "out.mp4"
     command = ["render", str(track), "-o", str(out), "--region", text, "--progress", "none"]

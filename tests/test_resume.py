@@ -133,8 +133,8 @@ def test_sequence_resumes(tmp_path: Path) -> None:
     for number in (1, 5, 6, 7, 8):
         samples.write_still(tmp_path / f"s_{number}.png", samples.picture(64, 48, number))
     for name, frames in (("a", "5-8"), ("b", "5-6")):
-        solve_to(tmp_path / f"{name}.mtrk", tmp_path / "s_#.png", frames)
-    solve_to(tmp_path / "b.mtrk", tmp_path / "s_#.png", "7-8", resume=True)
+        solve_to(tmp_path / f"{name}.mtrk", tmp_path / "s_%01d.png", frames)
+    solve_to(tmp_path / "b.mtrk", tmp_path / "s_%01d.png", "7-8", resume=True)
     assert rows_of(tmp_path / "a.mtrk") == rows_of(tmp_path / "b.mtrk")
 
 

@@ -64,7 +64,7 @@ def test_videos_keep_transparency(
 def test_stills_keep_transparency(track: Path, tmp_path: Path) -> None:
     """PNG has four channels where a stack leaves holes, and three where it does not."""
     for style, channels in ((HOLES, 4), (("--style", "flat"), 3)):
-        out = tmp_path / f"{channels}_#.png"
+        out = tmp_path / f"{channels}_%01d.png"
         command = ["render", str(track), "-o", str(out), "--frames", "1", "--progress", "none"]
         assert main([*command, *style]) == 0
         pixels = cv2.imread(str(tmp_path / f"{channels}_1.png"), cv2.IMREAD_UNCHANGED)
@@ -76,7 +76,7 @@ def test_stills_keep_transparency(track: Path, tmp_path: Path) -> None:
 def test_source_is_found_again(clip: Path, track: Path, tmp_path: Path, capsys) -> None:
     """Beside the track or by --source; each frame has its own; without it one line says so."""
     render = ["render", str(track), "--style", "source", "--progress", "none", "--frames", "1-2"]
-    assert main([*render, "-o", str(tmp_path / "a_#.png")]) == 0
+    assert main([*render, "-o", str(tmp_path / "a_%01d.png")]) == 0
     with av.open(str(clip)) as container:
         frames = [frame.to_ndarray(format="rgb24") for frame in container.decode(video=0)]
     for number in (1, 2):
@@ -84,9 +84,9 @@ def test_source_is_found_again(clip: Path, track: Path, tmp_path: Path, capsys) 
         assert np.abs(pixels - frames[number]).mean() < 3
     moved = clip.rename(tmp_path / "moved.mp4")
     try:
-        assert main([*render, "-o", str(tmp_path / "b_#.png")]) == 3
+        assert main([*render, "-o", str(tmp_path / "b_%01d.png")]) == 3
         assert "--source" in capsys.readouterr().err
-        assert main([*render, "-o", str(tmp_path / "b_#.png"), "--source", str(moved)]) == 0
+        assert main([*render, "-o", str(tmp_path / "b_%01d.png"), "--source", str(moved)]) == 0
     finally:
         moved.rename(clip)
     assert (tmp_path / "a_1.png").read_bytes() == (tmp_path / "b_1.png").read_bytes()
@@ -97,10 +97,11 @@ def test_resumed_clip_shows_its_source(clip: Path, tmp_path: Path) -> None:
     track = tmp_path / "t.mtrk"
     look = ["--style", "lenses", *QUICK, "--track", str(track)]
     assert (
-        main(["animate", str(clip), "-o", str(tmp_path / "a_#.png"), "--frames", "0-1", *look]) == 0
+        main(["animate", str(clip), "-o", str(tmp_path / "a_%01d.png"), "--frames", "0-1", *look])
+        == 0
     )
     more = ["--frames", "0-3", "--resume"]
-    assert main(["animate", str(clip), "-o", str(tmp_path / "b_#.png"), *look, *more]) == 0
+    assert main(["animate", str(clip), "-o", str(tmp_path / "b_%01d.png"), *look, *more]) == 0
     for number in (0, 1):
         pair = [(tmp_path / f"{name}_{number}.png").read_bytes() for name in "ab"]
         assert pair[0] == pair[1]

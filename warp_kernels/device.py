@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 import warp as wp
 
+from warp_kernels.kernel_cache import settle_cache
 from warp_kernels.meet import STRIDE, address_of_sleep, meet
 from warp_kernels.runtime import WARP, find_device, quiet, unused_card
 
@@ -105,11 +106,13 @@ class Device:
     """
 
     def __init__(self, name: str = "auto", threads: int = 0) -> None:
+        self.notes = settle_cache()
+        """Choices that were made, one sentence each."""
         self.warp = find_device(name)
         self.name = str(self.warp.alias)
         self.is_cuda = bool(self.warp.is_cuda)
-        self.notes = unused_card() if name == "auto" and not self.is_cuda else ()
-        """Choices that were made, one sentence each."""
+        if name == "auto" and not self.is_cuda:
+            self.notes += unused_card()
         self.part_count = 1 if self.is_cuda else max(1, threads or os.cpu_count() or 1)
         self._is_closed = False
         self._team = self._new_team()

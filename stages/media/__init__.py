@@ -9,6 +9,7 @@ from stages.media.info import MediaInfo
 from stages.media.naming import NumberedPattern, input_pattern
 from stages.media.output_plan import OutputPlan, check_output
 from stages.media.probe import probe
+from stages.media.read_options import ReadOptions
 
 __all__ = [
     "Decoder",
@@ -18,6 +19,7 @@ __all__ = [
     "MediaInfo",
     "NumberedPattern",
     "OutputPlan",
+    "ReadOptions",
     "check_output",
     "count_frames",
     "input_pattern",

@@ -1,9 +1,9 @@
 """The source's sound, carried over beside the new pictures."""
 
-import io
 from collections.abc import Iterator
 from fractions import Fraction
 from pathlib import Path
+from typing import Any
 
 import av
 from av.audio.frame import AudioFrame
@@ -11,51 +11,43 @@ from av.audio.stream import AudioStream
 from av.container import InputContainer, OutputContainer
 from av.packet import Packet
 
-from stages.media.codecs import Container
+from stages.media.audio_plan import AudioPlan, Converter, add_encoder, best_audio
+from stages.media.channels import Channels, channels_of
 from stages.media.container import DAMAGE, open_container, reason_of
 
-_AAC_RATES = (8000, 11025, 12000, 16000, 22050, 24000, 32000, 44100, 48000, 64000, 88200, 96000)
-_LAYOUTS = {1: "mono", 2: "stereo", 6: "5.1"}
-_BITS_PER_CHANNEL = 96_000
 _RESTART = Fraction(1, 2)
 """A clock that falls back by more than this has restarted [s]."""
+_PRIMING = Fraction(1, 8)
+"""Sound that a decoder needs before the first that is heard, at most [s]."""
 
 
-def open_audio(
-    path: Path, output: OutputContainer, container: Container, notes: list[str]
-) -> "AudioTrack | None":
+def open_audio(path: Path, output: OutputContainer, plan: AudioPlan) -> "AudioTrack | None":
     """Open a file's sound a second time and add a stream for it to an output.
 
     Args:
         path: The source.
         output: The output; its header must not be written yet.
-        container: Its format.
-        notes: Receives one sentence for every choice.
+        plan: What becomes of the sound.
 
     Returns:
-        The track, or None if the sound cannot be read.
+        The track, or None if the sound is gone since the plan was made.
+
+    Raises:
+        av.FFmpegError: If the format does not take it.
     """
     source = open_container(path)
-    stream = source.streams.best("audio")
-    if not isinstance(stream, AudioStream) or stream.codec_context is None:
+    stream = best_audio(source)
+    if stream is None:
         source.close()
         return None
-    if len(source.streams.audio) > 1:
-        notes.append(f"{len(source.streams.audio)} audio streams: stream {stream.index} is kept")
     try:
-        if _can_copy(stream, container.format):
+        if plan.encoder is None:
             copied = output.add_stream_from_template(stream)
             return _CopiedTrack(source, stream, copied, output)
-        track = _EncodedTrack(source, stream, _add_encoder(output, stream, container), output)
-    except DAMAGE as error:
+        return _EncodedTrack(source, stream, add_encoder(output, plan), output)
+    except BaseException:
         source.close()
-        notes.append(f"the audio is left out: {reason_of(error)}")
-        return None
-    notes.append(
-        f"{container.format} cannot hold {stream.codec_context.name} audio: "
-        f"converted to {track.codec_name}"
-    )
-    return track
+        raise
 
 
 class AudioTrack:
@@ -177,10 +169,13 @@ class _CopiedTrack(AudioTrack):
     """Packets as they are."""
 
     _last_dts: Fraction | None = None
+    _heard = False
 
     def _handle(self, packet: Packet, time: Fraction | None) -> None:
         if time is None or (self._start is not None and time < self._start):
             return
+        if packet.is_discard and (self._heard or time < -_PRIMING):
+            return  # cut off by the file's edit list; a decoder needs the last ones before it
         base = Fraction(packet.time_base)
         shift = round((self._offset - (self._start or 0)) / base)
         pts = packet.dts if packet.pts is None else packet.pts
@@ -191,6 +186,7 @@ class _CopiedTrack(AudioTrack):
             self.problem = "audio packets that run backwards are left out"
             return
         self._last_dts = dts
+        self._heard = self._heard or not packet.is_discard
         packet.stream = self._target
         self._output.mux(packet)
 
@@ -198,49 +194,34 @@ class _CopiedTrack(AudioTrack):
 class _EncodedTrack(AudioTrack):
     """Sound that is decoded and encoded anew."""
 
-    @property
-    def codec_name(self) -> str:
-        """Name of the new codec."""
-        return self._target.codec_context.codec.canonical_name
+    _converter: Converter | None = None
 
     def _handle(self, packet: Packet, time: Fraction | None) -> None:
         try:
-            frames = packet.decode()
+            frames: list[Any] = packet.decode()
         except DAMAGE as error:
             self.problem = f"damaged audio packets are left out ({reason_of(error)})"
             return
-        for frame in frames:
-            if isinstance(frame, AudioFrame) and frame.pts is not None and frame.time_base:
+        sounds = [frame for frame in frames if isinstance(frame, AudioFrame)]
+        for frame, channels in [(sound, channels_of(sound)) for sound in sounds]:
+            if frame.pts is not None and frame.time_base:
                 base = Fraction(frame.time_base)
                 if self._start is not None and frame.pts * base + self._offset < self._start:
                     continue
                 frame.pts += round((self._offset - (self._start or 0)) / base)
-                self._output.mux(self._target.encode(frame))
+                self._encode(frame, channels)
+
+    def _encode(self, frame: AudioFrame, channels: Channels) -> None:
+        converter = self._converter = self._converter or Converter(self._target.codec_context)
+        try:
+            made = converter.convert(frame, channels)
+        except DAMAGE as error:
+            self.problem = f"audio that changes its kind is left out ({reason_of(error)})"
+            return
+        for converted in made:
+            self._output.mux(self._target.encode(converted))
 
     def _flush(self) -> None:
+        for converted in self._converter.flush() if self._converter else []:
+            self._output.mux(self._target.encode(converted))
         self._output.mux(self._target.encode(None))
-
-
-def _can_copy(stream: AudioStream, format_name: str) -> bool:
-    """Whether a format takes a stream's packets as they are, found by writing a header."""
-    trial = av.open(io.BytesIO(), "w", format=format_name)
-    try:
-        trial.add_stream_from_template(stream)
-        trial.start_encoding()
-        trial.close()
-    except DAMAGE:
-        return False
-    return True
-
-
-def _add_encoder(output: OutputContainer, stream: AudioStream, container: Container) -> AudioStream:
-    codec = stream.codec_context
-    rate = codec.sample_rate if codec.sample_rate in _AAC_RATES else 48000
-    if container.audio == "libopus":
-        rate = 48000
-    target = output.add_stream(container.audio or "aac", rate=rate)
-    if not isinstance(target, AudioStream):
-        raise ValueError(f"{container.audio} is no audio encoder")
-    target.codec_context.layout = _LAYOUTS.get(codec.channels, "stereo")
-    target.codec_context.bit_rate = _BITS_PER_CHANNEL * min(max(codec.channels, 1), 6)
-    return target

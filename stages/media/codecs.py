@@ -20,6 +20,11 @@ class Container:
     options: dict[str, str] = field(default_factory=dict)
     """Options of the muxer."""
 
+    @property
+    def audio_name(self) -> str:
+        """Name of the codec that audio is converted to."""
+        return (self.audio or "none").removeprefix("lib")
+
 
 @dataclass(frozen=True)
 class Encoder:

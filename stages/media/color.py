@@ -3,12 +3,15 @@
 Left to itself swscale takes BT.601 for untagged video and rounds with a bias; see FLAGS.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import av
 import numpy as np
 from av.video.frame import VideoFrame
 from av.video.reformatter import ColorRange, Colorspace, Interpolation, VideoReformatter
+
+from stages.media.color_profile import ColorTransform, transform_of, transform_of_primaries
 
 FLAGS = int(Interpolation.BICUBIC | Interpolation.ACCURATE_RND | Interpolation.FULL_CHR_H_INT)
 """The default flags bias colours by about one code value; these do not."""
@@ -45,16 +48,48 @@ class ColorReading:
     """`pq`, `hlg` or None."""
     notes: tuple[str, ...]
     """What had to be guessed, one sentence each."""
+    transform: ColorTransform | None = None
+    """From the colours of its profile or primaries to those of sRGB; None where they are these."""
 
 
-def read_color(frame: VideoFrame) -> ColorReading:
+def read_color(frame: VideoFrame, profile: bytes | None = None) -> ColorReading:
     """Decide how a frame's pixels are to be understood.
-
-    Untagged video is BT.709 when it is at least 1280 wide or more than 576 high, else BT.601,
-    as players do.
 
     Args:
         frame: A decoded frame.
+        profile: Its ICC profile, or None.
+    """
+    color = _read_matrix(frame)
+    if color.hdr is not None:
+        return color  # tone mapping ends in sRGB's colours already
+    transform, told = _read_profile(frame.format.name, frame.color_primaries, profile)
+    return replace(color, transform=transform, notes=(*color.notes, *told))
+
+
+@lru_cache(maxsize=4)
+def _read_profile(
+    format_name: str, primaries: int, profile: bytes | None
+) -> tuple[ColorTransform | None, tuple[str, ...]]:
+    """How colours get to sRGB, and what is to be told of it."""
+    if profile is None:
+        transform = transform_of_primaries(primaries)
+    else:
+        try:
+            transform = transform_of(profile, gray=format_name.startswith(("gray", "ya", "mono")))
+        except ValueError as error:
+            return None, (f"colour profile left out, colours are taken as sRGB: {error}",)
+        if transform.is_srgb:
+            return None, ()
+    if transform is None:
+        return None, ()
+    return transform, (f"colours converted from {transform.name} to sRGB",)
+
+
+def _read_matrix(frame: VideoFrame) -> ColorReading:
+    """How a frame's pixels become RGB.
+
+    Untagged video is BT.709 when it is at least 1280 wide or more than 576 high, else BT.601,
+    as players do.
     """
     if frame.format.is_rgb or "pal8" in frame.format.name:
         return ColorReading("rgb", Colorspace.ITU709, True, _TRANSFERS.get(frame.color_trc), ())
@@ -76,56 +111,60 @@ def read_color(frame: VideoFrame) -> ColorReading:
 
 
 class RgbReader:
-    """Converts decoded frames to upright RGB of one size; keeps its converter between frames."""
+    """Converts decoded frames to RGB; keeps its converter between frames."""
 
-    def __init__(self, width: int, height: int, paper: int = WHITE) -> None:
+    def __init__(self, paper: int = WHITE) -> None:
         """Prepare for a source.
 
         Args:
-            width: Width of every result [px]; frames of another size are scaled to it.
-            height: Height of every result [px].
             paper: Grey that shows through transparent pixels [code value].
         """
         self.saw_transparency = False
         """Whether a frame had transparent pixels, through which the paper shows."""
         self._paper = paper
-        self._size = (width, height)
         self._reformatter = VideoReformatter()
 
-    def read8(self, frame: VideoFrame, color: ColorReading) -> np.ndarray:
+    def read8(self, frame: VideoFrame, color: ColorReading, size: tuple[int, int]) -> np.ndarray:
         """Convert to 8 bits.
 
         Args:
             frame: A decoded frame.
             color: How to understand it.
+            size: Width and height of the result [px]; a frame of another size is scaled.
 
         Returns:
             Code values, [H, W, 3] uint8.
         """
         if has_alpha(frame):
-            return self._over_paper(self._convert(frame, color, "rgba"))
-        pixels = self._convert(frame, color, "rgb24")
+            rgba = self._convert(frame, color, "rgba", size)
+            if color.transform is not None:
+                rgba[..., :3] = color.transform.apply(rgba[..., :3])
+            return self._over_paper(rgba)
+        pixels = self._convert(frame, color, "rgb24", size)
         if not color.full_range and frame.format.name.startswith(("gray", "ya")):
             pixels = _EXPAND_GRAY[pixels]
-        return pixels
+        return pixels if color.transform is None else color.transform.apply(pixels)
 
-    def read16(self, frame: VideoFrame, color: ColorReading) -> np.ndarray:
+    def read16(self, frame: VideoFrame, color: ColorReading, size: tuple[int, int]) -> np.ndarray:
         """Convert to 16 bits, for tone mapping.
 
         Args:
             frame: A decoded frame.
             color: How to understand it.
+            size: Width and height of the result [px]; a frame of another size is scaled.
 
         Returns:
             Code values, [H, W, 3] uint16.
         """
-        return self._convert(frame, color, "rgb48le")
+        return self._convert(frame, color, "rgb48le", size)
 
-    def _convert(self, frame: VideoFrame, color: ColorReading, layout: str) -> np.ndarray:
+    def _convert(
+        self, frame: VideoFrame, color: ColorReading, layout: str, size: tuple[int, int]
+    ) -> np.ndarray:
         converted = self._reformatter.reformat(
             frame,
-            width=self._size[0],
-            height=self._size[1],
+            width=size[0],
+            height=size[1],
             format=layout,
             src_colorspace=color.colorspace,
             src_color_range=_FULL if color.full_range else _LIMITED,

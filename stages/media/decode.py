@@ -20,6 +20,7 @@ from stages.media.info import DEFAULT_MAX_PIXELS, MediaInfo
 from stages.media.naming import NumberedPattern, input_pattern
 from stages.media.orientation import upright
 from stages.media.probe import describe, describe_sequence
+from stages.media.read_options import AS_IT_COMES, ReadOptions
 from stages.media.sequence import existing_numbers, refuse_gaps, still_frames
 from stages.media.source import VideoSource
 from stages.media.timing import TimeRepair, usual_step
@@ -37,6 +38,7 @@ def open_decoder(
     max_pixels: int = DEFAULT_MAX_PIXELS,
     threads: int = 0,
     paper: int = WHITE,
+    read: ReadOptions = AS_IT_COMES,
 ) -> "Decoder":
     """Open a source for reading its frames.
 
@@ -48,15 +50,16 @@ def open_decoder(
         max_pixels: Largest picture that is opened [px].
         threads: Decoder threads, 0 for one per core.
         paper: Grey that shows through transparent pixels [code value].
+        read: What the user chose.
 
     Raises:
         MediaError: If it cannot be read.
-        OptionError: If a pattern has more than one number field.
+        OptionError: If a choice does not fit the source, or a pattern has several number fields.
     """
     pattern = input_pattern(path)
     if pattern is not None:
-        return _SequenceDecoder(pattern, frame_range, margin, max_pixels, paper)
-    return _FileDecoder(Path(path), frame_range, margin, max_pixels, threads, paper)
+        return _SequenceDecoder(pattern, frame_range, margin, max_pixels, paper, read)
+    return _FileDecoder(Path(path), frame_range, margin, max_pixels, threads, paper, read)
 
 
 class Decoder:
@@ -91,7 +94,9 @@ class Decoder:
         self._before, self._after = margin
         self._name = source_name
         self._paper = paper
-        self._reader = RgbReader(info.coded_width, info.coded_height, paper)
+        self._reader = RgbReader(paper)
+        self._shown = info.orientation
+        self._profile: bytes | None = None
         self._delivered = 0
         self._met = False
         self._iterator: Iterator[Frame] | None = None
@@ -124,18 +129,20 @@ class Decoder:
         raise NotImplementedError
 
     def _to_frame(self, index: int, pts: int, raw: VideoFrame) -> Frame:
-        if (raw.width, raw.height) != (self.info.coded_width, self.info.coded_height):
+        info, shown = self.info, self._shown
+        size = (info.height, info.width) if shown.is_sideways else (info.width, info.height)
+        if (raw.width, raw.height) != size:
             self._note_once("picture size changes within the source: scaled to the first size")
         self._delivered += 1
-        return Frame(index, pts, self.info.time_base, self._pixels(raw))
+        return Frame(index, pts, info.time_base, upright(self._pixels(raw, size), shown))
 
-    def _pixels(self, raw: VideoFrame) -> np.ndarray:
-        color = read_color(raw)
+    def _pixels(self, raw: VideoFrame, size: tuple[int, int]) -> np.ndarray:
+        color = read_color(raw, self._profile)
         try:
             if color.hdr is not None:
-                pixels = tone_map(self._reader.read16(raw, color), color.hdr)
+                pixels = tone_map(self._reader.read16(raw, color, size), color.hdr)
             else:
-                pixels = self._reader.read8(raw, color)
+                pixels = self._reader.read8(raw, color, size)
         except DAMAGE as error:
             raise MediaError(
                 self._name,
@@ -145,7 +152,7 @@ class Decoder:
         if self._reader.saw_transparency:
             paper = {WHITE: "white", 0: "black"}.get(self._paper, f"grey {self._paper}")
             self._note_once(f"transparent parts are shown over {paper}")
-        return upright(pixels, self.info.rotation)
+        return pixels
 
     def _note_once(self, note: str) -> None:
         if note not in self.notes:
@@ -153,6 +160,9 @@ class Decoder:
 
     def _refuse_nothing(self, available: str) -> None:
         if not (self._met and self._delivered):
+            wanted = self._range
+            if wanted.start_time is not None or wanted.end_time is not None:
+                raise OptionError(_no_such_times(self._name, wanted, self.info, available))
             raise OptionError(
                 f"frames {self._range} of {self._name}: there are none; the source has {available}"
             )
@@ -169,14 +179,17 @@ class _FileDecoder(Decoder):
         max_pixels: int,
         threads: int,
         paper: int,
+        read: ReadOptions,
     ) -> None:
-        self._source = VideoSource(path, max_pixels, threads)
+        self._source = VideoSource(path, max_pixels, threads, read)
         try:
-            info = describe(self._source)
+            info = describe(self._source, read)
+            profile = self._source.profile_of(self._source.first_frame())
         except BaseException:
             self._source.close()
             raise
         super().__init__(info, wanted, margin, str(path), paper)
+        self._profile = profile
         self._end = Fraction(0)
 
     def close(self) -> None:
@@ -227,7 +240,7 @@ class _FileDecoder(Decoder):
             )
 
     def _breaks_off(self, count: int) -> bool:
-        declared, info = self._source.stream.frames, self.info
+        declared, info = self._source.declared_frames, self.info
         if declared and "mp4" in info.container:
             return count < declared
         if info.kind == "image" or info.duration is None or info.average_rate is None:
@@ -249,20 +262,23 @@ class _SequenceDecoder(Decoder):
         margin: tuple[int, int],
         max_pixels: int,
         paper: int,
+        read: ReadOptions,
     ) -> None:
         self._pattern = pattern
         self._numbers = existing_numbers(pattern)
-        self._max_pixels = max_pixels
+        self._max_pixels, self._read = max_pixels, read
         refuse_gaps(pattern, self._numbers, wanted)
-        info = describe_sequence(pattern, self._numbers, max_pixels)
+        info = describe_sequence(pattern, self._numbers, max_pixels, read)
         super().__init__(info, wanted, margin, pattern.text, paper)
 
     def _frames(self) -> Iterator[Frame]:
         numbers = self._given()
         self._met = bool(numbers)
         first = self._numbers[0]
-        stills = still_frames(self._pattern, numbers, self._max_pixels, self.warnings)
-        for number, raw in stills:
+        stills = still_frames(self._pattern, numbers, self._max_pixels, self._read, self.warnings)
+        for number, source, raw in stills:
+            self._shown = source.orientation_of(raw)  # a camera may be turned between two
+            self._profile = source.profile_of(raw)
             yield self._to_frame(number, number - first, raw)
         self._refuse_nothing(f"stills {first} to {self._numbers[-1]}")
 
@@ -274,3 +290,13 @@ class _SequenceDecoder(Decoder):
         if not held:
             return []
         return in_step[max(0, held[0] - self._before) : held[-1] + 1 + self._after]
+
+
+def _no_such_times(name: str, wanted: FrameRange, info: MediaInfo, available: str) -> str:
+    """What to say if a range of times holds no frame."""
+    times = (("--start", wanted.start_time), ("--end", wanted.end_time))
+    told = " ".join(f"{flag} {float(time):g}" for flag, time in times if time is not None)
+    if wanted.first or wanted.last is not None or wanted.step > 1:
+        told = f"--frames {wanted} {told}"
+    length = "" if info.duration is None else f" and lasts {float(info.duration):.2f} s"
+    return f"{told}: no frame of {name} is shown then; the source has {available}{length}"

@@ -37,6 +37,15 @@ class EncodeOptions:
         metadata={"help": "speed of the encoder, such as veryfast or slow for h264 and h265"},
     )
     audio: bool = field(default=True, metadata={"help": "carry the source's audio over"})
+    audio_mode: str = field(
+        default="auto",
+        metadata={
+            "help": "copy carries the source's audio packet by packet, convert makes AAC or Opus "
+            "of it, auto copies what players of the format play",
+            "choices": ("auto", "copy", "convert"),
+            "flag": "audio",
+        },
+    )
     overwrite: bool = field(default=False, metadata={"help": "replace an existing output"})
     threads: int = field(default=0, metadata={"help": "encoder threads, 0 for one per core"})
 

@@ -46,11 +46,13 @@ def _frame_times(source: VideoSource, number: int) -> list[int] | None:
         if packet.size == 0:
             continue
         pts, dts = packet.pts, packet.dts
-        if pts is None or dts is None or packet.is_discard or packet.is_corrupt:
+        if pts is None or dts is None or packet.is_corrupt:
             return None
         if last_dts is not None and dts <= last_dts:
             return None
         last_dts = dts
+        if packet.is_discard:
+            continue  # decoded for the sake of others, but not shown
         times.append(pts)
         if len(times) > number and dts > sorted(times)[number]:
             break

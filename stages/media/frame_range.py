@@ -127,11 +127,12 @@ class FrameRange:
         return ends if self.step == 1 else f"{ends}x{self.step}"
 
 
-def parse_time(text: str) -> Fraction:
+def parse_time(text: str, name: str = "time") -> Fraction:
     """Read a time as seconds (`12.5`) or as a clock (`1:02.5`, `0:01:02.5`).
 
     Args:
         text: What the user wrote.
+        name: The option, for the message.
 
     Returns:
         The time [s], exact.
@@ -141,6 +142,25 @@ def parse_time(text: str) -> Fraction:
     """
     match = _CLOCK.fullmatch(text.strip())
     if match is None:
-        raise OptionError(f"time {text!r}: not a time; write seconds (12.5) or h:mm:ss (0:01:02.5)")
-    whole = int(match["hours"] or 0) * 3600 + int(match["minutes"] or 0) * 60
-    return whole + Fraction(match["seconds"])
+        raise OptionError(
+            f"{name} {text!r}: not a time; write seconds (12.5) or h:mm:ss (0:01:02.5)"
+        )
+    hours, minutes = int(match["hours"] or 0), int(match["minutes"] or 0)
+    time = hours * 3600 + minutes * 60 + Fraction(match["seconds"])
+    parts = ([("seconds", Fraction(match["seconds"]))] if match["minutes"] else []) + (
+        [("minutes", Fraction(minutes))] if match["hours"] else []
+    )
+    for part, value in parts:
+        if value >= 60:
+            raise OptionError(
+                f"{name} {text!r}: {part} of a clock go up to 59; write {_clock_of(time)}"
+            )
+    return time
+
+
+def _clock_of(time: Fraction) -> str:
+    """A time as a clock, such as 1:39 or 1:00:00.5."""
+    whole, rest = divmod(time, 60)
+    hours, minutes = divmod(int(whole), 60)
+    seconds = f"{int(rest):02}" + f"{float(rest % 1):.3f}".lstrip("0").rstrip("0").rstrip(".")
+    return f"{hours}:{minutes:02}:{seconds}" if hours else f"{minutes}:{seconds}"

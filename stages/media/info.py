@@ -4,6 +4,8 @@ from dataclasses import dataclass, fields
 from fractions import Fraction
 from pathlib import Path
 
+from stages.media.orientation import Orientation
+
 DEFAULT_MAX_PIXELS = 100_000_000
 """Largest picture that is opened [px]; larger ones are taken for an attack or a mistake."""
 
@@ -31,7 +33,7 @@ class MediaInfo:
     coded_height: int
     """Height as stored, before rotation [px]."""
     rotation: int
-    """Counter-clockwise turn that makes the stored picture upright [degrees: 0, 90, 180, 270]."""
+    """Counter-clockwise turn by which the stored picture is shown [degrees: 0, 90, 180, 270]."""
     sample_aspect: Fraction
     """Width of a pixel of the upright picture over its height."""
     time_base: Fraction
@@ -58,6 +60,21 @@ class MediaInfo:
     """Its samples per second, or None."""
     notes: tuple[str, ...] = ()
     """Choices that were made in reading the file, one sentence each."""
+    mirrored: bool = False
+    """Whether left and right are exchanged after the turn."""
+
+    first_frame: int = 0
+    """Number of the first frame: that of numbered stills stands in their names."""
+
+    @property
+    def last_frame(self) -> int | None:
+        """Number of the last frame if none is missing, an estimate; None if unknown."""
+        return None if self.frame_count is None else self.first_frame + self.frame_count - 1
+
+    @property
+    def orientation(self) -> Orientation:
+        """How the stored picture is shown."""
+        return Orientation(self.rotation, self.mirrored)
 
     def as_dict(self) -> dict[str, object]:
         """The same as plain values for JSON; fractions become strings such as `1/12800`."""

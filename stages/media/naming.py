@@ -1,7 +1,11 @@
-"""Names of numbered stills: `shot_####.png`, `shot_%04d.png`, `shot_$F4.png`."""
+"""Names of numbered stills: `shot_####.png`, `shot_%04d.png`, `shot_$F4.png`.
+
+A number field is two or more `#`, `%0Nd` or `$FN`; a single `#`, a `%` or a `$` elsewhere is part
+of a name like any other character. A file that bears exactly the name of a pattern is that file.
+"""
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from warp_kernels.errors import OptionError
@@ -9,7 +13,7 @@ from warp_kernels.errors import OptionError
 STILL_ENDINGS = frozenset({".png", ".jpg", ".jpeg", ".tif", ".tiff", ".webp"})
 """Endings of a still that can be written; anything FFmpeg knows can be read."""
 
-_FIELD = re.compile(r"(?P<hashes>#+)|%0?(?P<printf>\d*)d|\$F(?P<houdini>\d*)")
+_FIELD = re.compile(r"(?P<hashes>##+)|%0(?P<printf>\d+)d|\$F(?P<houdini>\d+)")
 
 
 @dataclass(frozen=True)
@@ -50,10 +54,14 @@ class NumberedPattern:
                 f"{path}: {len(fields)} number fields in one name; keep one, such as name_####.png"
             )
         field = fields[0]
-        digits = len(field["hashes"] or "") or int(field["printf"] or field["houdini"] or 1)
+        digits = len(field["hashes"] or "") or int(field["printf"] or field["houdini"])
         name = whole.name
         return cls(
-            str(path), whole.parent, name[: field.start()], name[field.end() :], min(digits, 20)
+            str(path),
+            whole.parent,
+            name[: field.start()],
+            name[field.end() :],
+            max(1, min(digits, 20)),
         )
 
     @property
@@ -69,16 +77,38 @@ class NumberedPattern:
         """
         return self.folder / f"{self.prefix}{number:0{self.digits}d}{self.suffix}"
 
-    def numbers(self) -> list[int]:
-        """Frame numbers that exist in the folder, in ascending order."""
+    def numbers(self, *, links: bool = False) -> list[int]:
+        """Frame numbers that exist in the folder, in ascending order.
+
+        Args:
+            links: Whether links that lead nowhere count, too.
+        """
+        stills = self._stills(links)
+        return sorted(number for number, name in stills if name == self.path_for(number).name)
+
+    def left_out(self) -> list[str]:
+        """Names of stills that differ only in the digits of their number, by that number."""
+        stills = sorted(self._stills())
+        return [name for number, name in stills if name != self.path_for(number).name]
+
+    def taking_all(self) -> str | None:
+        """The pattern that takes what is left out as well; None if there is none."""
+        stills = self._stills()
+        for digits in range(1, 21):
+            other = replace(self, digits=digits)
+            if all(name == other.path_for(number).name for number, name in stills):
+                field = "#" * digits if digits > 1 else "%01d"
+                return f"{self.prefix}{field}{self.suffix}"
+        return None
+
+    def _stills(self, links: bool = False) -> list[tuple[int, str]]:
+        """Numbers and names of the files that have any digits in the field's place."""
         if not self.folder.is_dir():
             return []
-        shape = re.compile(
-            re.escape(self.prefix) + rf"(\d{{{self.digits},}})" + re.escape(self.suffix)
-        )
-        found = (shape.fullmatch(entry.name) for entry in self.folder.iterdir())
-        numbers = sorted({int(match[1]) for match in found if match})
-        return [number for number in numbers if self.path_for(number).is_file()]
+        shape = re.compile(re.escape(self.prefix) + r"([0-9]{1,20})" + re.escape(self.suffix))
+        entries = [entry for entry in self.folder.iterdir() if shape.fullmatch(entry.name)]
+        names = [e.name for e in entries if e.is_file() or (links and e.is_symlink())]
+        return [(int(match[1]), match[0]) for match in map(shape.fullmatch, names) if match]
 
 
 def input_pattern(path: str | Path) -> NumberedPattern | None:

@@ -1,44 +1,88 @@
-"""Turning stored pictures upright."""
+"""Turning stored pictures upright, and mirrored ones as a player shows them."""
 
+import struct
+from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
+from av.video.frame import VideoFrame
+
+from stages.media.side_data import side_data
 
 MAX_SAMPLE_ASPECT = Fraction(8)
 """Pixels stretched by more than this are taken for a mistake in the file."""
 
 
-def upright(pixels: np.ndarray, rotation: int) -> np.ndarray:
+@dataclass(frozen=True)
+class Orientation:
+    """How a stored picture is to be shown: one of eight ways."""
+
+    rotation: int = 0
+    """Counter-clockwise turn [degrees: 0, 90, 180, 270]."""
+    mirrored: bool = False
+    """Whether left and right are exchanged after that."""
+
+    @property
+    def is_sideways(self) -> bool:
+        """Whether width and height are exchanged."""
+        return self.rotation in (90, 270)
+
+
+def orientation_of(frame: VideoFrame) -> Orientation:
+    """How a frame is to be shown; FFmpeg gives EXIF orientations as a matrix, too.
+
+    Args:
+        frame: A decoded frame.
+    """
+    matrix = side_data(frame, "DISPLAYMATRIX")
+    if matrix is None or len(matrix) < 36:
+        return Orientation()
+    a, b, _, c, d, *_ = struct.unpack("=9i", matrix[:36])
+    return orientation_from(a, b, c, d)
+
+
+def orientation_from(a: float, b: float, c: float, d: float) -> Orientation:
+    """The nearest of the eight ways to a matrix.
+
+    A stored point (x, y) is shown at (a x + c y, b x + d y); x points right, y down.
+
+    Args:
+        a: See above.
+        b: See above.
+        c: See above.
+        d: See above.
+    """
+    mirrored = a * d - b * c < 0
+    if mirrored:  # undo it, so that a turn is left
+        a, c = -a, -c
+    if abs(a + d) >= abs(b - c):
+        return Orientation(180 if a + d < 0 else 0, mirrored)
+    return Orientation(90 if c > b else 270, mirrored)
+
+
+def upright(pixels: np.ndarray, orientation: Orientation) -> np.ndarray:
     """Turn a picture.
 
     Args:
         pixels: Stored picture, [H, W, C].
-        rotation: Counter-clockwise turn [degrees: 0, 90, 180, 270].
+        orientation: How it is to be shown.
 
     Returns:
-        The turned picture, C-contiguous; the argument itself when nothing is to be done.
+        The picture as it is shown, C-contiguous; the argument itself when nothing is to be done.
     """
-    return np.ascontiguousarray(np.rot90(pixels, k=rotation // 90)) if rotation else pixels
+    if orientation.rotation:
+        pixels = np.rot90(pixels, k=orientation.rotation // 90)
+    if orientation.mirrored:
+        pixels = pixels[:, ::-1]
+    return np.ascontiguousarray(pixels)
 
 
-def quarter_turns(degrees: float) -> int:
-    """The nearest multiple of 90 degrees.
-
-    Args:
-        degrees: Counter-clockwise turn; any value, negative ones as well.
-
-    Returns:
-        0, 90, 180 or 270 [degrees].
-    """
-    return round(degrees / 90) % 4 * 90
-
-
-def sane_aspect(stored: Fraction | None, rotation: int) -> Fraction | None:
+def sane_aspect(stored: Fraction | None, orientation: Orientation) -> Fraction | None:
     """Sample aspect of the upright picture.
 
     Args:
         stored: Pixel width over height as stored; None or 0 if unknown.
-        rotation: Turn that makes the picture upright [degrees: 0, 90, 180, 270].
+        orientation: How the picture is to be shown.
 
     Returns:
         The aspect, 1 if unknown; None if the stored one is beyond belief.
@@ -47,4 +91,4 @@ def sane_aspect(stored: Fraction | None, rotation: int) -> Fraction | None:
         return Fraction(1)
     if not 1 / MAX_SAMPLE_ASPECT <= stored <= MAX_SAMPLE_ASPECT:
         return None
-    return Fraction(1 / stored if rotation in (90, 270) else stored)
+    return Fraction(1 / stored if orientation.is_sideways else stored)

@@ -8,8 +8,9 @@ from pathlib import Path
 
 import av
 
+from stages.media.audio_plan import AudioPlan, plan_audio
 from stages.media.codecs import CONTAINERS, Container, Encoder, find_encoder
-from stages.media.commit import output_error
+from stages.media.commit import output_error, remove_left_overs, true_place
 from stages.media.encoder_setup import EncodeOptions, try_encoder
 from stages.media.frame_range import FrameRange
 from stages.media.info import MediaInfo
@@ -35,8 +36,8 @@ class OutputPlan:
     """Width of the pictures that are handed over [px]."""
     height: int
     """Height of the pictures that are handed over [px]."""
-    audio: bool
-    """Whether the source's audio is carried over."""
+    audio: AudioPlan | None
+    """How the source's audio gets there; None without."""
     notes: tuple[str, ...]
     """Choices that were made, one sentence each."""
 
@@ -115,9 +116,13 @@ def _plan_video(
         )
     _check_quality(encoder, options)
     notes = []
-    audio = options.audio and source.audio_codec is not None and container.audio is not None
-    if options.audio and source.audio_codec is not None and container.audio is None:
-        notes.append(f"{ending} holds no sound: the audio is left out")
+    audio = None
+    if options.audio and source.audio_codec is not None:
+        if container.audio is None:
+            notes.append(f"{ending} holds no sound: the audio is left out")
+        else:
+            audio = plan_audio(source.path, container, options.audio_mode)
+            notes += audio.notes if audio else []
     if container.format == "gif" and source.sample_aspect != 1:
         notes.append(f"{ending} has square pixels only: the picture will look stretched")
     if container.format in ("matroska", "webm"):
@@ -171,7 +176,7 @@ def _plan_stills(
     notes = ["stills hold no sound: the audio is left out"] if source.audio_codec else []
     if not options.audio:
         notes = []
-    return OutputPlan(target, pattern, None, None, "", size[0], size[1], False, tuple(notes))
+    return OutputPlan(target, pattern, None, None, "", size[0], size[1], None, tuple(notes))
 
 
 def _check_holds(container: Container, encoder: Encoder, ending: str) -> None:
@@ -207,16 +212,20 @@ def _check_quality(encoder: Encoder, options: EncodeOptions) -> None:
 def _check_place(
     plan: OutputPlan, source: MediaInfo, options: EncodeOptions, frame_range: FrameRange
 ) -> None:
-    folder = plan.path.parent
+    place = true_place(plan.path)
+    folder = place.parent
     if not folder.is_dir():
         raise OutputError(plan.path, f"there is no folder {folder}", "create it first")
-    if plan.path.is_dir():
+    if place.is_dir():
         raise OutputError(plan.path, "is a folder", "give the name of a file")
+    if place.is_symlink() or (place.exists() and not place.is_file()):
+        raise OutputError(plan.path, "is no regular file", "give the name of a file")
     existing = _existing(plan, frame_range)
     if _is_source(plan, existing, source):
         raise OutputError(plan.path, "is the input itself", "choose another name")
     if existing and not options.overwrite:
         raise OutputError(existing[0], "exists already", "choose another name or --overwrite")
+    remove_left_overs(folder)
     probe = folder / f".trimotion-{os.getpid()}.test"
     try:
         probe.touch()
@@ -227,8 +236,8 @@ def _check_place(
 
 def _existing(plan: OutputPlan, frame_range: FrameRange) -> list[Path]:
     if plan.pattern is None:
-        return [plan.path] if plan.path.exists() else []
-    wanted = (n for n in plan.pattern.numbers() if frame_range.holds(n, Fraction(0)))
+        return [plan.path] if os.path.lexists(plan.path) else []
+    wanted = (n for n in plan.pattern.numbers(links=True) if frame_range.holds(n, Fraction(0)))
     return [plan.pattern.path_for(number) for number in wanted]
 
 

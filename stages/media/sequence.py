@@ -1,11 +1,13 @@
 """Numbered stills as frames."""
 
+import gc
 from collections.abc import Iterator
 
 from av.video.frame import VideoFrame
 
 from stages.media.frame_range import FrameRange
 from stages.media.naming import NumberedPattern
+from stages.media.read_options import ReadOptions
 from stages.media.source import VideoSource
 from warp_kernels.errors import MediaError
 
@@ -21,12 +23,32 @@ def existing_numbers(pattern: NumberedPattern) -> list[int]:
     """
     numbers = pattern.numbers()
     if not numbers:
+        other = pattern.taking_all() if pattern.left_out() else None
         raise MediaError(
             pattern.text,
             f"no still such as {pattern.path_for(1).name}",
-            "check the name and the number of digits",
+            f"write {other}" if other else "check the name and the number of digits",
         )
     return numbers
+
+
+def note_on_left_out(pattern: NumberedPattern) -> list[str]:
+    """Tell of stills that a pattern misses because their numbers have other digits.
+
+    Args:
+        pattern: The stills' name.
+
+    Returns:
+        One sentence, or none.
+    """
+    others = pattern.left_out()
+    if not others:
+        return []
+    named = " and ".join(others) if len(others) < 3 else f"{others[0]} to {others[-1]}"
+    stills = "1 still is" if len(others) == 1 else f"{len(others)} stills are"
+    all_of = pattern.taking_all()
+    remedy = f"; {all_of} takes all" if all_of else ""
+    return [f"{stills} left out, whose numbers have other digits ({named}){remedy}"]
 
 
 def refuse_gaps(pattern: NumberedPattern, numbers: list[int], wanted: FrameRange) -> None:
@@ -56,19 +78,25 @@ def refuse_gaps(pattern: NumberedPattern, numbers: list[int], wanted: FrameRange
 
 
 def still_frames(
-    pattern: NumberedPattern, numbers: list[int], max_pixels: int, problems: list[str]
-) -> Iterator[tuple[int, VideoFrame]]:
-    """Decode stills one after the other.
+    pattern: NumberedPattern,
+    numbers: list[int],
+    max_pixels: int,
+    read: ReadOptions,
+    problems: list[str],
+) -> Iterator[tuple[int, VideoSource, VideoFrame]]:
+    """Decode stills one after the other: their number, their opened file, their picture.
 
     Args:
         pattern: The stills' name.
         numbers: The frame numbers to decode.
         max_pixels: Largest picture that is opened [px].
+        read: What the user chose.
         problems: Receives one sentence for every still that cannot be decoded and is left out.
     """
     for number in numbers:
         try:
-            with VideoSource(pattern.path_for(number), max_pixels) as source:
-                yield number, source.first_frame()
+            with VideoSource(pattern.path_for(number), max_pixels, read=read) as source:
+                yield number, source, source.first_frame()
+            gc.collect(1)  # frames whose side data was read are large and hold themselves
         except MediaError as error:
             problems.append(f"left out: {error}")

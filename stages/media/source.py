@@ -7,6 +7,8 @@ from types import TracebackType
 
 from av.video.frame import VideoFrame
 
+from stages.media.alpha_decoder import alpha_decoder
+from stages.media.coded_photo import CodedPhoto, open_photo
 from stages.media.container import (
     DAMAGE,
     choose_video,
@@ -14,7 +16,13 @@ from stages.media.container import (
     open_container,
     reason_of,
 )
-from warp_kernels.errors import MediaError
+from stages.media.orientation import Orientation, orientation_of
+from stages.media.pages import pages_of, with_page_first
+from stages.media.picture_size import check_size
+from stages.media.read_options import AS_IT_COMES, ReadOptions
+from stages.media.side_data import side_data
+from warp_kernels.errors import MediaError, OptionError
+from warp_kernels.memory import MORE_MEMORY, is_limit_near
 
 MAX_FAILURES = 10_000
 """Undecodable packets after which a file is given up."""
@@ -27,15 +35,19 @@ class VideoSource:
     cannot be decoded are skipped and counted, and a file that breaks off simply ends.
     """
 
-    def __init__(self, path: Path, max_pixels: int, threads: int = 0) -> None:
+    def __init__(
+        self, path: Path, max_pixels: int, threads: int = 0, read: ReadOptions = AS_IT_COMES
+    ) -> None:
         """Open a file.
 
         Args:
             path: A local file.
             max_pixels: Largest picture that is decoded [px].
             threads: Decoder threads, 0 for one per core.
+            read: What the user chose.
 
         Raises:
+            OptionError: If a page or stream is chosen that there is not.
             MediaError: If it cannot be opened, holds no video or declares too large a picture.
         """
         self.path = path
@@ -46,24 +58,53 @@ class VideoSource:
         self._max_pixels = max_pixels
         self._guard = max_pixels + max_pixels // 8 + 2**16  # decoders round sizes up
         self._threads = threads
+        self._read = read
+        self._photo: CodedPhoto | None = None
         self._open()
 
     def _open(self) -> None:
-        self.container = open_container(self.path, self._guard)
+        read = self._read
+        self.container = open_container(self.path, self._guard, read.fps)
         try:
-            chosen = choose_video(self.container, self.path)
-            self.stream = chosen.stream
-            self.notes = chosen.notes
+            pages = self._choose_page()
+            self._photo = open_photo(self.path, self.container, self._max_pixels, read.page)
+            chosen = self._photo or choose_video(self.container, self.path, read.stream)
+            self.stream, self.notes = chosen.stream, (*chosen.notes, *pages)
             codec = self.stream.codec_context
             check_size(self.path, codec.width, codec.height, self._max_pixels)
             codec.options = {"max_pixels": str(self._guard)}
             self.stream.thread_type = "AUTO"
             self.stream.thread_count = self._threads
+            self._alpha_decoder = alpha_decoder(self.stream, self._guard, self._threads)
         except BaseException:
             self.container.close()
             raise
         self._ahead: VideoFrame | None = None
-        self._decoded = self._decode_all()
+        self._decoded = self._photo.frames() if self._photo else self._decode_all()
+
+    def _choose_page(self) -> tuple[str, ...]:
+        """Open the page of a TIFF that is wanted, and note that there are others."""
+        page = self._read.page
+        if "tiff" not in self._codec_names():
+            if page is not None and page > 1 and "mp4" not in self.container.format.name:
+                raise OptionError(f"--page {page}: {self.path} has one picture; leave it out")
+            return ()
+        pages = pages_of(self.path)
+        if page is not None and page > max(1, len(pages)):
+            what = f"{len(pages)} pages" if len(pages) > 1 else "one page"
+            raise OptionError(f"--page {page}: {self.path} has {what}; give a smaller number")
+        if len(pages) < 2:
+            return ()
+        if page is not None:
+            self.container.close()
+            content = with_page_first(self.path, pages[page - 1])
+            self.container = open_container(self.path, self._guard, content=content)
+        shown = "the first is" if page is None else f"page {page} is"
+        return (f"{len(pages)} pages in one file: {shown} shown, --page N shows another",)
+
+    def _codec_names(self) -> set[str]:
+        streams = self.container.streams.video
+        return {s.codec_context.name for s in streams if s.codec_context and self.is_picture}
 
     def reopen(self) -> None:
         """Start again at the first frame."""
@@ -73,7 +114,28 @@ class VideoSource:
     @property
     def is_picture(self) -> bool:
         """Whether the file is a still picture."""
-        return is_picture(self.container)
+        return self._photo is not None or is_picture(self.container)
+
+    @property
+    def format_name(self) -> str:
+        """FFmpeg's name of the file format, or `heif`."""
+        return "heif" if self._photo else str(self.container.format.name)
+
+    def orientation_of(self, frame: VideoFrame) -> Orientation:
+        """How a frame of this file is to be shown.
+
+        Args:
+            frame: A decoded frame.
+        """
+        return self._photo.orientation if self._photo else orientation_of(frame)
+
+    def profile_of(self, frame: VideoFrame) -> bytes | None:
+        """ICC profile of a frame of this file, or None.
+
+        Args:
+            frame: A decoded frame.
+        """
+        return self._photo.photo.profile if self._photo else side_data(frame, "ICC_PROFILE")
 
     @property
     def time_base(self) -> Fraction:
@@ -82,10 +144,26 @@ class VideoSource:
         return Fraction(base) if base else Fraction(1, 90000)
 
     @property
+    def declared_frames(self) -> int:
+        """Number of frames that the file states, without those that its edit list hides; 0 if none.
+
+        Clips that were trimmed without encoding them anew keep the frames around the cut, which
+        decoders need and players do not show.
+        """
+        stated = int(self.stream.frames)
+        entries = self.stream.index_entries
+        if stated and "mp4" in self.format_name and len(entries):
+            return sum(not entry.is_discard for entry in entries)
+        return stated
+
+    @property
     def average_rate(self) -> Fraction | None:
-        """Frames per second as declared or guessed by FFmpeg; None if unknown."""
+        """Frames per second as declared or guessed by FFmpeg; None if unknown.
+
+        More than one frame per unit of the clock is a mistake in the file; encoders refuse it.
+        """
         for rate in (self.stream.average_rate, self.stream.guessed_rate):
-            if rate:
+            if rate and rate * self.time_base <= 1:
                 return Fraction(rate)
         return None
 
@@ -133,6 +211,8 @@ class VideoSource:
             av.FFmpegError: If the container cannot seek.
         """
         self.container.seek(pts, stream=self.stream, backward=True)
+        if self._alpha_decoder is not None:
+            self._alpha_decoder.flush_buffers()
         self._ahead = None
         self._decoded = self._decode_all()
 
@@ -159,10 +239,12 @@ class VideoSource:
                 packet = next(packets, None)
                 if packet is None:
                     return
-                frames = packet.decode()
+                frames = (self._alpha_decoder or self.stream).decode(packet)
             except EOFError:
                 return
             except DAMAGE as error:
+                if isinstance(error, MemoryError) and is_limit_near():
+                    raise MediaError(self.path, "out of memory", MORE_MEMORY) from error
                 self._count(error)
                 if self.failures > MAX_FAILURES:
                     return
@@ -172,24 +254,3 @@ class VideoSource:
     def _count(self, error: Exception) -> None:
         self.failures += 1
         self.reason = self.reason or reason_of(error)
-
-
-def check_size(path: Path, width: int, height: int, max_pixels: int) -> None:
-    """Refuse pictures that are too large, before memory is taken for them.
-
-    Args:
-        path: The file, for the message.
-        width: Declared width [px]; 0 if unknown.
-        height: Declared height [px]; 0 if unknown.
-        max_pixels: The limit [px].
-
-    Raises:
-        MediaError: If the picture exceeds the limit.
-    """
-    if width * height > max_pixels:
-        raise MediaError(
-            path,
-            f"{width}x{height} is {width * height / 1e6:.0f} million pixels, "
-            f"more than {max_pixels / 1e6:.0f} million",
-            "scale it down with another program first",
-        )

@@ -19,6 +19,7 @@ from stages.media.encoder_setup import EncodeOptions, open_quietly, set_up, sett
 from stages.media.frame_range import FrameRange
 from stages.media.info import MediaInfo
 from stages.media.output_plan import OutputPlan
+from stages.media.pacing import Pacing, Shown
 from stages.media.palette import PaletteFilter
 from warp_kernels.errors import OutputError
 
@@ -27,6 +28,9 @@ _COARSE = {"gif": Fraction(1, 100), "matroska": Fraction(1, 1000), "webm": Fract
 """Formats with a clock of their own; mp4 and mov take any."""
 _LONGEST = {"gif": 2**16 - 1, "mp4": 2**31 - 1, "mov": 2**31 - 1}
 """Longest time for which a picture can be shown [units of the file's clock]."""
+_SHORTEST = {"gif": 2}
+"""Shortest time for which a picture is shown [units of the file's clock], else 1: players take a
+hundredth of a second in a GIF for a mistake, and show the picture for a tenth."""
 
 
 class VideoWriter:
@@ -50,14 +54,14 @@ class VideoWriter:
         self._options = options
         self._shifted = not frame_range.is_whole
         self._pending = PendingFile(plan.path)
+        assert plan.container is not None
+        self._pacing = Pacing(_SHORTEST.get(plan.container.format, 1))
         self._output: OutputContainer | None = None
         self._audio: AudioTrack | None = None
-        self._held: VideoFrame | None = None
         self._start = Fraction(0)
-        self._held_pts = 0
         self._durations: dict[int | None, int] = {}
-        self._held_time = Fraction(0)
-        self._held_step: Fraction | None = None
+        self._last_time = Fraction(0)
+        self._step: Fraction | None = None
 
     def write(self, pixels: np.ndarray, time: Fraction, time_base: Fraction) -> None:
         """Add a picture.
@@ -75,13 +79,10 @@ class VideoWriter:
                 self._open(pixels, time, time_base)
             frame = self._colors.write(self._fit(pixels))
             frame.time_base = self._clock
-            pts = round((time - self._start) / self._clock)
-            if self._held is not None:
-                pts = max(pts, self._held_pts + 1)
-                self._held_step = time - self._held_time
-                self._encode_held(pts - self._held_pts)
-            frame.pts = pts
-            self._held, self._held_pts, self._held_time = frame, pts, time
+            if self._pacing.held is not None:
+                self._step = time - self._last_time
+            self._last_time = time
+            self._encode(self._pacing.add(Shown(frame, time, self._ticks(time))))
         except _FAILURES as error:
             raise output_error(self._plan.path, error) from error
 
@@ -92,17 +93,18 @@ class VideoWriter:
             OutputError: If it cannot be written.
         """
         try:
-            if self._output is None or self._held is None:
+            if self._output is None:
                 return
-            last = self._last_step()
-            self._encode_held(max(1, round(last / self._clock)))
+            end = self._last_time + self._last_step()
+            self._encode(self._pacing.finish(self._ticks(end)))
             self._mux(self._palette.finish() if self._palette else iter(()))
             self._mux(iter((None,)))
             if self._audio is not None:
-                self._audio.finish(self._held_time + last if self._shifted else None)
+                self._audio.finish(end if self._shifted else None)
                 if self._audio.problem:
                     self.notes.append(self._audio.problem)
             self._output.close()
+            self._tell_dropped()
         except _FAILURES as error:
             self.abort()
             raise output_error(self._plan.path, error) from error
@@ -140,9 +142,8 @@ class VideoWriter:
         self._palette = PaletteFilter() if pixel_format == "pal8" else None
         self._colors = YuvWriter("rgb24" if self._palette else pixel_format)
         self._start = time if self._shifted else Fraction(0)
-        if plan.audio:
-            path = self._source.path
-            self._audio = open_audio(path, self._output, plan.container, self.notes)
+        if plan.audio is not None:
+            self._audio = open_audio(self._source.path, self._output, plan.audio)
             if self._audio is not None:
                 self._audio.begin(time if self._shifted else None)
 
@@ -195,15 +196,33 @@ class VideoWriter:
     def _last_step(self) -> Fraction:
         """How long the last picture is shown [s]."""
         source = self._source
-        step = self._held_step or 1 / (source.average_rate or Fraction(25))
+        step = self._step or 1 / (source.average_rate or Fraction(25))
         if not self._shifted and source.duration is not None:
-            declared = source.start_time + source.duration - self._held_time
+            declared = source.start_time + source.duration - self._last_time
             if 0 < declared < 10 * step:
                 return declared
         return step
 
-    def _encode_held(self, duration: int) -> None:
-        assert self._held is not None
+    def _ticks(self, time: Fraction) -> int:
+        """A time of the source on the clock of the file."""
+        return round((time - self._start) / self._clock)
+
+    def _tell_dropped(self) -> None:
+        """Say how many pictures there was no time for."""
+        if self._pacing.dropped:
+            assert self._plan.container is not None
+            name = self._plan.container.format
+            fastest = 1 / (_SHORTEST[name] * self._clock)
+            self.notes.append(
+                f"a {name} shows at most {fastest} pictures a second: {self._pacing.dropped} are "
+                "left out evenly"
+            )
+
+    def _encode(self, settled: Iterator[tuple[Shown, int]]) -> None:
+        for shown, duration in settled:
+            self._encode_one(shown, duration)
+
+    def _encode_one(self, shown: Shown, duration: int) -> None:
         assert self._plan.container is not None
         if duration > _LONGEST.get(self._plan.container.format, duration):
             raise OutputError(
@@ -212,10 +231,12 @@ class VideoWriter:
                 f"{self._plan.container.format} can state",
                 "write .mkv, or leave the gap out with --frames",
             )
-        self._durations[self._held_pts] = duration
+        frame = shown.frame
+        frame.pts = shown.pts
+        self._durations[shown.pts] = duration
         if self._audio is not None:
-            self._audio.advance(self._held_time)
-        self._mux(self._palette.push(self._held) if self._palette else iter((self._held,)))
+            self._audio.advance(shown.time)
+        self._mux(self._palette.push(frame) if self._palette else iter((frame,)))
 
     def _mux(self, frames: Iterator[VideoFrame | None]) -> None:
         assert self._output is not None

@@ -1,0 +1,37 @@
+"""Text files as editors of all systems write them."""
+
+import codecs
+from pathlib import Path
+
+_MARKS = (
+    (codecs.BOM_UTF8, "utf-8-sig"),
+    (codecs.BOM_UTF32_LE, "utf-32"),  # begins like the mark of UTF-16 and must come before it
+    (codecs.BOM_UTF32_BE, "utf-32"),
+    (codecs.BOM_UTF16_LE, "utf-16"),
+    (codecs.BOM_UTF16_BE, "utf-16"),
+)
+"""Byte order marks and the encodings that they tell of."""
+
+
+def read_text(path: Path) -> str:
+    """Read a text in UTF-8 or UTF-16, with or without a byte order mark; lines end in a newline.
+
+    Args:
+        path: The file.
+
+    Raises:
+        OSError: If it cannot be read.
+        UnicodeDecodeError: If it is in another encoding.
+    """
+    content = path.read_bytes()
+    text = content.decode(_encoding_of(content))
+    return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def _encoding_of(content: bytes) -> str:
+    for mark, encoding in _MARKS:
+        if content.startswith(mark):
+            return encoding
+    if content[1:2] == b"\0":  # the first letter of a text that we read is a plain one
+        return "utf-16-le"
+    return "utf-16-be" if content[:1] == b"\0" else "utf-8"

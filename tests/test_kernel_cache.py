@@ -1,0 +1,72 @@
+"""Compiled kernels find a place, or one line tells that there is none."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from test_encode import ROOT
+
+SCRIPT = """
+import sys
+from pathlib import Path
+from warp_kernels import kernel_cache
+from warp_kernels.errors import TrimotionError
+if sys.argv[1:]:
+    kernel_cache.tempfile.tempdir = sys.argv[1]
+try:
+    print(*kernel_cache.settle_cache())
+except TrimotionError as error:
+    print("refused:", error)
+print(kernel_cache._usual_place())
+"""
+
+
+def settled(place: str | Path, *spare: str) -> list[str]:
+    """What a process of its own says of a place, and where it stores kernels."""
+    command = [sys.executable, "-c", SCRIPT, *spare]
+    env = {"WARP_CACHE_PATH": str(place), "PATH": "/usr/bin:/bin", "HOME": str(Path.home())}
+    done = subprocess.run(command, capture_output=True, text=True, cwd=ROOT, env=env)
+    assert done.returncode == 0, done.stderr
+    return done.stdout.splitlines()
+
+
+def test_a_place_that_can_be_used_is(tmp_path: Path) -> None:
+    """It is made if it is missing, and nothing is told."""
+    note, place = settled(tmp_path / "new" / "cache")
+    assert note == ""
+    assert Path(place).is_relative_to(tmp_path / "new" / "cache")
+
+
+@pytest.mark.parametrize("kind", ["file", "in a file", "no folder can be made", "full"])
+def test_a_place_that_cannot_be_used(tmp_path: Path, kind: str) -> None:
+    """A temporary one is taken, a note tells why, and it is gone afterwards."""
+    (tmp_path / "file").write_text("")
+    places = {
+        "file": tmp_path / "file",
+        "in a file": tmp_path / "file" / "cache",
+        "no folder can be made": Path("/proc/cache"),
+        "full": Path("/dev/full"),
+    }
+    if not places[kind].parent.exists() and kind != "in a file":
+        pytest.skip("this system has no such place")
+    note, place = settled(places[kind])
+    assert "kept for this run only" in note
+    assert "WARP_CACHE_PATH" in note
+    assert "trimotion-kernels-" in place
+    assert not Path(place).exists()
+
+
+def test_no_place_at_all_is_one_line(tmp_path: Path) -> None:
+    """With the remedy."""
+    (tmp_path / "file").write_text("")
+    told, _ = settled(tmp_path / "file", str(tmp_path / "missing"))
+    assert told.startswith("refused: compiled kernels cannot be stored")
+    assert "WARP_CACHE_PATH" in told
+
+
+def test_an_empty_name_is_none() -> None:
+    """Warp would fill the current folder."""
+    note, place = settled("")
+    assert note == ""
+    assert not Path(place).is_relative_to(ROOT)

@@ -1,0 +1,85 @@
+"""Where compiled kernels are kept: Warp's own place, or a temporary one if that cannot be used."""
+
+import atexit
+import os
+import shutil
+import tempfile
+from functools import cache
+from pathlib import Path
+
+import warp as wp
+from warp._src.thirdparty import appdirs
+
+from warp_kernels.errors import TrimotionError
+
+VARIABLE = "WARP_CACHE_PATH"
+"""Environment variable that says where; processes that are started later look at it, too."""
+_ROOM = 8 * 2**20
+"""Free space that the kernels of a run may take [bytes]."""
+
+
+@cache
+def settle_cache() -> tuple[str, ...]:
+    """Make sure that kernels can be stored, before Warp starts.
+
+    Returns:
+        One sentence if a temporary place had to be taken; it is removed when the process ends.
+
+    Raises:
+        TrimotionError: If there is no place at all.
+    """
+    place = _usual_place()
+    try:
+        _try_to_write(place)
+        return ()
+    except OSError as error:
+        reason = str(error.strerror or error).lower()
+    try:
+        spare = Path(tempfile.mkdtemp(prefix="trimotion-kernels-"))
+        atexit.register(shutil.rmtree, spare, ignore_errors=True)
+        _try_to_write(spare / wp.config.version)
+    except OSError as error:
+        raise TrimotionError(
+            f"compiled kernels cannot be stored in {place} ({reason}) nor in "
+            f"{tempfile.gettempdir()}; name a folder with {VARIABLE}"
+        ) from error
+    _share(place, spare / wp.config.version)
+    os.environ[VARIABLE] = str(spare)
+    wp.config.kernel_cache_dir = None
+    return (
+        f"compiled kernels cannot be stored in {place} ({reason}): they are kept for this run "
+        f"only; {VARIABLE} names another folder",
+    )
+
+
+def _usual_place() -> Path:
+    """Where Warp would store kernels."""
+    if wp.config.kernel_cache_dir:
+        return Path(wp.config.kernel_cache_dir)
+    named = os.environ.get(VARIABLE)
+    if named:
+        return Path(os.path.realpath(named)) / wp.config.version
+    os.environ.pop(VARIABLE, None)  # Warp would take an empty name for the current folder
+    cache = appdirs.user_cache_dir(appname="warp", appauthor="NVIDIA", version=wp.config.version)
+    return Path(cache)
+
+
+def _try_to_write(place: Path) -> None:
+    """Make a folder and see whether a file fits into it.
+
+    Raises:
+        OSError: If not.
+    """
+    place.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryFile(dir=place) as trial:
+        trial.write(bytes(_ROOM))
+        trial.flush()
+
+
+def _share(place: Path, spare: Path) -> None:
+    """Let what was compiled before be found in the temporary place; it is only read."""
+    try:
+        for entry in place.iterdir():
+            (spare / entry.name).symlink_to(entry.resolve())
+    except OSError:
+        pass  # it is compiled again
