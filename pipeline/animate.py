@@ -154,7 +154,7 @@ def _convert(job: Job, progress: Progress, *, draws: bool) -> Animated:
             check_drawing(job, info)
         device = Device(job.device, job.threads)
         weights = open_weights(job.weights, (info.width, info.height), job.frame_range)
-        triangulator = _triangulator(job, info, device)
+        triangulator = triangulator_of(job, (info.width, info.height), device)
         drawing = Drawing(job, info, device) if draws else None
         tally = _Tally(progress, _expected(job, info.frame_count))
         notes = [] if past is None else past.notes
@@ -164,7 +164,7 @@ def _convert(job: Job, progress: Progress, *, draws: bool) -> Animated:
             with drawing or nullcontext(), closing(found), writer:
                 if past is not None:
                     _recall(job, tally, writer if draws else None)
-                for solved in _solve(found, triangulator, job, past):
+                for solved in solved_frames(found, triangulator, job, past):
                     writer.put(solved)
                     tally.add(solved.snapshot.mesh.triangle_count, solved.snapshot.rmse)
             if track is not None:
@@ -174,9 +174,14 @@ def _convert(job: Job, progress: Progress, *, draws: bool) -> Animated:
     return tally.result(begun, warnings, [*decoder.notes, *weights.notes, *notes, *made])
 
 
-def _triangulator(job: Job, info: MediaInfo, device: Device) -> Triangulator:
-    """What makes snapshots of a source for the looks that will be drawn."""
-    size = (info.width, info.height)
+def triangulator_of(job: Job, size: tuple[int, int], device: Device) -> Triangulator:
+    """What makes snapshots of a source for the looks that will be drawn.
+
+    Args:
+        job: Says how pictures become triangles, and the looks.
+        size: Width and height of the source, upright [px].
+        device: Where kernels run.
+    """
     return Triangulator(device, size, job.triangulate, job.fitted, weighted=job.weights is not None)
 
 
@@ -190,11 +195,16 @@ def _open_steps(
     """Decode, find cuts and estimate motion ahead of the solution."""
     reached = None if past is None else past.reached
     found = steps(with_shots(decoder, job.cuts), decoder.info, job, reached, notes)
-    return ahead(_weighed(found, weights), DECODED_AHEAD)
+    return ahead(weighed(found, weights), DECODED_AHEAD)
 
 
-def _weighed(found: Iterable[Step], weights: EvenWeights | WeightMap) -> Iterator[Step]:
-    """Steps whose frames have their weights; frames around the range need none."""
+def weighed(found: Iterable[Step], weights: EvenWeights | WeightMap) -> Iterator[Step]:
+    """Steps whose frames have their weights; frames around the range need none.
+
+    Args:
+        found: The steps.
+        weights: Those of the job.
+    """
     waiting: deque[Step] = deque()
 
     def frames() -> Iterator[Frame]:
@@ -207,12 +217,18 @@ def _weighed(found: Iterable[Step], weights: EvenWeights | WeightMap) -> Iterato
         yield replace(waiting.popleft(), frame=frame)
 
 
-def _solve(
+def solved_frames(
     found: Iterable[Step], triangulator: Triangulator, job: Job, past: Past | None
 ) -> Iterator[Solved]:
     """Triangulate frame after frame, each from the mesh of the one before.
 
     A picture that comes again, as in what is drawn for every other frame, keeps its mesh.
+
+    Args:
+        found: The frames, and the motion between them; one is taken for each that is given.
+        triangulator: Made by `triangulator_of` for the job.
+        job: Says how frames begin and what will be drawn.
+        past: What an earlier run left, or None.
     """
     snapshot = None if past is None else past.snapshot
     for step in found:
@@ -248,7 +264,7 @@ def _fitted(
         return
     around = FrameRange(rows[0].frame, rows[-1].frame, track.header.frame_range.step)
     weights = open_weights(job.weights, (info.width, info.height), around)
-    triangulator = _triangulator(job, info, device)
+    triangulator = triangulator_of(job, (info.width, info.height), device)
     wanted = {row.frame for row in rows}
     with open_decoder(job.source, around) as decoder:
         frames = (frame for frame in decoder if frame.index in wanted)
