@@ -240,8 +240,10 @@ def _checked(size: Any) -> tuple[int, int]:
     Raises:
         OptionError: If they are none, or impossible.
     """
-    (read,) = given_values("draw", {"size": size}).values()
-    width, height = (int(side) for side in cast(tuple[int, int], read))
+    if size is None:
+        raise OptionError("size: give the width and height of the frames, such as (640, 360)")
+    read = cast(tuple[int, int], given_values("draw", {"size": size})["output_size"])
+    width, height = read
     if not 1 <= min(width, height) <= max(width, height) <= MAX_SIDE:
         raise OptionError(f"size={width}x{height}: sides must lie between 1 and {MAX_SIDE} pixels")
     return width, height

@@ -36,8 +36,10 @@ def given_values(function: str, keywords: Mapping[str, Any]) -> dict[str, object
 
 def _read(option: Option, name: str, value: object) -> object:
     """The value of an option, as the command line gives it."""
-    if option.is_switch and not isinstance(value, bool):
-        raise OptionError(f"{name}={value!r}: give True or False")
+    if option.is_switch:  # a keyword is the field itself, also where the flag says no
+        if not isinstance(value, bool):
+            raise OptionError(f"{name}={value!r}: give True or False")
+        return value
     return option_value(option, value, name, "=")
 
 

@@ -13,9 +13,8 @@ from warp_kernels.errors import OptionError
 GUARD = 'if __name__ == "__main__":'
 
 
-@contextmanager
-def safe_processes(jobs: int) -> Iterator[None]:
-    """Refuse to start processes where that would go wrong, and say why if it did.
+def check_processes(jobs: int) -> None:
+    """Refuse to start processes where that would go wrong.
 
     Args:
         jobs: How many are wanted.
@@ -23,17 +22,29 @@ def safe_processes(jobs: int) -> Iterator[None]:
     Raises:
         OptionError: If this is itself a process that only imports the program, or may have none.
     """
-    if jobs == 1:
-        yield
-        return
     current = multiprocessing.current_process()
-    if getattr(current, "_inheriting", False):
+    if jobs > 1 and getattr(current, "_inheriting", False):
         raise OptionError(
             f"--jobs {jobs}: a new process imports your program and would run it again; put the "
             f"call under {GUARD}"
         )
-    if current.daemon:
+    if jobs > 1 and current.daemon:
         raise OptionError(f"--jobs {jobs}: a daemonic process cannot start others; use --jobs 1")
+
+
+@contextmanager
+def explained_loss(jobs: int) -> Iterator[None]:
+    """Say what may be the matter with the program if a process is lost.
+
+    Args:
+        jobs: How many are wanted.
+
+    Raises:
+        OptionError: If one is lost, and new ones import the program.
+    """
+    if jobs == 1:
+        yield
+        return
     from pipeline.parts import LostPartError
 
     try:

@@ -5,7 +5,7 @@ What is heavy is imported by the calls.
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Unpack
+from typing import TYPE_CHECKING, Any, Unpack, cast
 
 from pipeline.library.given import file_name, given_values
 from pipeline.library.keywords import (
@@ -15,6 +15,7 @@ from pipeline.library.keywords import (
     RenderKeywords,
     SolveKeywords,
 )
+from pipeline.library.processes import check_processes, explained_loss
 from pipeline.library.result import Result
 from pipeline.library.signature import with_keywords
 from pipeline.library.told import Told, progress_for
@@ -45,9 +46,7 @@ def animate(
         TrimotionError: One of its kinds; the message is one line that ends with a remedy.
     """
     job = _job("animate", source, output, options)
-    from pipeline.library.processes import safe_processes
-
-    with progress_for(progress) as told, safe_processes(job.jobs):
+    with progress_for(progress) as told, explained_loss(job.jobs):
         if job.jobs > 1 or job.followed:
             from pipeline.parts import animate_in_parts
 
@@ -76,9 +75,7 @@ def solve(
     # Looks, which a preset may hold, do not belong to a track.
     fixed = {"track": file_name("output", output), "styles": (), "regions": ()}
     job = _job("solve", source, output, options, **fixed)
-    from pipeline.library.processes import safe_processes
-
-    with progress_for(progress) as told, safe_processes(job.jobs):
+    with progress_for(progress) as told, explained_loss(job.jobs):
         if job.jobs > 1:
             from pipeline.parts import solve_in_parts
 
@@ -168,6 +165,7 @@ def _job(
     """
     names = {"source": file_name("source", source), "output": file_name("output", output)}
     values = given_values(function, options)
+    check_processes(cast(int, values.get("jobs", 1)))
     from pipeline.build_job import build_job
 
     return build_job({**values, **names, **fixed})
