@@ -28,6 +28,17 @@ TYPES = {
     "tuple[int, int]": {str, tuple[int, int]},
 }
 
+HOMES = {
+    "range": "RangeKeywords",
+    "triangles": "ShapeKeywords",
+    "motion": "AnimatorKeywords",
+    "look": "LookKeywords",
+    "output": "OutputKeywords",
+    "run": "DeviceKeywords",
+    "processes": "SolveKeywords",
+}
+"""Where options of a group belong, unless they are of some functions only."""
+
 # (message of the command line, the same for a program)
 MESSAGES = [
     ("--triangles 0: a picture has two or more", "triangles=0: a picture has two or more"),
@@ -81,12 +92,25 @@ def test_keywords_are_the_options(function: str) -> None:
     options = options_of(function)
     preset = {"preset"} if function in PRESET else set()
     advice = f"{KEYWORDS[function].__name__} in pipeline/library/keywords.py"
-    missing = {k: f"{k}: {options[k].declared.kind}" for k in options.keys() - hints.keys()}
-    assert not missing, f"add to {advice}, or leave out of TAKEN[{function!r}]: {missing}"
+    missing = options.keys() - hints.keys()
+    lines = [f"{name}: {type_of(options[name])} in {home_of(options[name])}" for name in missing]
+    assert not missing, f"add to {advice}, or leave out of TAKEN[{function!r}]: {lines}"
     surplus = hints.keys() - options.keys() - preset
     assert not surplus, f"remove from {advice}: {surplus}"
     for keyword, option in options.items():
         assert agrees(hints[keyword], option), f"{keyword} in {advice}: {option.declared.kind}"
+
+
+def home_of(option: Option) -> str:
+    """Where an option most likely belongs."""
+    return HOMES.get(option.group, "a class of its own")
+
+
+def type_of(option: Option) -> str:
+    """Type of an option's keyword, as it is written."""
+    if option.is_repeatable:
+        return "str | Sequence[str]"
+    return option.declared.kind
 
 
 def agrees(hint: object, option: Option) -> bool:
@@ -158,6 +182,7 @@ def test_impossible_options_are_told_as_keywords(options: str, tmp_path: Path) -
     [
         ({"trianglez": 3}, ["trianglez", "animate", "did you mean triangles?"]),
         ({"style": "flat"}, ["style", "did you mean styles?"]),
+        ({"quiet": True}, ["quiet", "progress", "leave it out"]),
         ({"no_audio": True}, ["did you mean audio?"]),
         ({"qqqqqq": 1}, ["qqqqqq", "there are frames,", "preset"]),
         ({"audio": "no"}, ["audio='no'", "True or False"]),

@@ -161,7 +161,7 @@ def test_works_in_other_threads_under_a_loop(clip: Path, tmp_path: Path) -> None
 
 
 def test_processes_give_the_same_track(clip: Path, tmp_path: Path) -> None:
-    """`jobs=2` is only faster."""
+    """`jobs=2` is only faster (here two processes start, which takes seconds)."""
     frames = f"{CUT - 2}-{CUT + 1}"
     trimotion.solve(clip, tmp_path / "a.mtrk", frames=frames, jobs=2, **QUICK)
     trimotion.solve(clip, tmp_path / "b.mtrk", frames=frames, **QUICK)
@@ -169,7 +169,7 @@ def test_processes_give_the_same_track(clip: Path, tmp_path: Path) -> None:
 
 
 def test_program_without_guard_is_told(clip: Path, tmp_path: Path) -> None:
-    """New processes import a program; one that starts others there says what to write."""
+    """New processes import a program (three start here); one that would start others says so."""
     program = tmp_path / "program.py"
     call = f"trimotion.solve({str(clip)!r}, {str(tmp_path / 'c.mtrk')!r}, jobs=2, triangles=40)"
     program.write_text(f"import trimotion\n{call}\n")

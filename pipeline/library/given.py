@@ -10,6 +10,13 @@ from pipeline.option_value import option_value
 from pipeline.options import Option, with_preset
 from warp_kernels.errors import OptionError
 
+INSTEAD = {
+    "quiet": "calls are, unless progress says otherwise",
+    "verbose": "notes are in the result",
+    "debug": "Python shows where an error arose",
+}
+"""What is there in place of flags that make no sense in a program."""
+
 
 def given_values(function: str, keywords: Mapping[str, Any]) -> dict[str, object]:
     """Check keywords and give what a job is built from; None is as if left out.
@@ -98,6 +105,8 @@ def _unknown(function: str, name: str) -> str:
     if others:
         owners = ", ".join(others)
         return f"{name}: {function} has no such option, only {owners}; leave it out"
+    if name in INSTEAD:
+        return f"{name}: {function} has no such option; {INSTEAD[name]}, so leave it out"
     known = [*options_of(function), *(["preset"] if function in PRESET else [])]
     begun = [keyword for keyword in known if keyword.startswith(name)]
     similar = begun or difflib.get_close_matches(name, known, n=1, cutoff=0.5)

@@ -30,7 +30,7 @@ def with_keywords(name: str) -> Callable[[Function], Function]:
                 keyword,
                 inspect.Parameter.KEYWORD_ONLY,
                 default=_default(options[keyword]) if keyword in options else None,
-                annotation=hints[keyword],
+                annotation=hints.get(keyword, Any),
             )
             for keyword in (*options, *(["preset"] if name in PRESET else []))
         ]
