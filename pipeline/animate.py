@@ -20,7 +20,7 @@ from pipeline.progress import Progress
 from pipeline.rows_around import rows_around
 from pipeline.shots import with_shots
 from pipeline.source_pictures import source_pictures
-from pipeline.steps import Step, check_cuts, open_around, steps
+from pipeline.steps import Reached, Step, check_cuts, open_around, steps
 from pipeline.stream import Behind, ahead
 from pipeline.take import Take
 from pipeline.track import FrameRow, TrackReader, TrackWriter
@@ -192,19 +192,34 @@ def _open_steps(
     past: Past | None,
     notes: list[str],
 ) -> Generator[Step, None, None]:
-    """Decode, find cuts and estimate motion ahead of the solution."""
+    """Decode and prepare frames ahead of the solution."""
     reached = None if past is None else past.reached
-    found = steps(with_shots(decoder, job.cuts), decoder.info, job, reached, notes)
-    return ahead(weighed(found, weights), DECODED_AHEAD)
+    return ahead(prepared(decoder, decoder.info, weights, job, reached, notes), DECODED_AHEAD)
 
 
-def weighed(found: Iterable[Step], weights: EvenWeights | WeightMap) -> Iterator[Step]:
-    """Steps whose frames have their weights; frames around the range need none.
+def prepared(
+    frames: Iterable[Frame],
+    info: MediaInfo,
+    weights: EvenWeights | WeightMap,
+    job: Job,
+    reached: Reached | None,
+    notes: list[str],
+) -> Iterator[Step]:
+    """Find cuts, estimate motion and weigh: all that frames go through before they are solved.
 
     Args:
-        found: The steps.
+        frames: The frames of the range and around it.
+        info: Their source.
         weights: Those of the job.
+        job: Says what is wanted.
+        reached: Where an earlier run ended, or None.
+        notes: Receives what the user should know, one sentence each.
     """
+    return _weighed(steps(with_shots(frames, job.cuts), info, job, reached, notes), weights)
+
+
+def _weighed(found: Iterable[Step], weights: EvenWeights | WeightMap) -> Iterator[Step]:
+    """Steps whose frames have their weights; frames around the range need none."""
     waiting: deque[Step] = deque()
 
     def frames() -> Iterator[Frame]:

@@ -55,7 +55,7 @@ def follow(frames: list[np.ndarray]) -> list[np.ndarray]:
     with trimotion.Animator((96, 64), **QUICK) as animator:
         for number, pixels in enumerate(frames):
             found += animator.feed(pixels, new_shot=number == 0)
-        print(animator.delay, len(animator.finish()))
+        print(len(animator.finish()))
     moved = []
     for before, after in pairwise(found):
         _, one, other = np.intersect1d(before.vertex_ids, after.vertex_ids, return_indices=True)

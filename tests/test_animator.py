@@ -38,13 +38,15 @@ def frames(stills: str) -> list[np.ndarray]:
         return [frame.pixels for frame in decoder]
 
 
-def fed(animator: trimotion.Animator, frames: list[np.ndarray]) -> list[trimotion.Triangulation]:
+def fed(
+    animator: trimotion.Animator, frames: list[np.ndarray], delay: int = AHEAD
+) -> list[trimotion.Triangulation]:
     """What becomes of frames; they come back in order, as late as is promised."""
     found = []
     with animator:
         for number, pixels in enumerate(frames):
             found += animator.feed(pixels)
-            assert len(found) == max(0, number + 1 - animator.delay)
+            assert len(found) == max(0, number + 1 - delay)
         found += animator.finish()
     assert [one.frame for one in found] == list(range(len(frames)))
     return found
@@ -67,7 +69,8 @@ def test_animator_gives_what_solve_gives(
 ) -> None:
     """To the bit, shots and ids as well, for cuts that are found and cuts that are ignored."""
     trimotion.solve(stills, tmp_path / "t.mtrk", **QUICK, **options)
-    found = fed(trimotion.Animator((96, 64), **QUICK, **options), frames)
+    delay = 0 if "cuts" in options else AHEAD
+    found = fed(trimotion.Animator((96, 64), **QUICK, **options), frames, delay)
     with trimotion.open_track(tmp_path / "t.mtrk") as track:
         for one, other in zip(found, track, strict=True):
             assert_same(one, other)
@@ -92,13 +95,11 @@ def test_told_shots_are_as_good_as_found_ones(frames: list[np.ndarray]) -> None:
     """With `new_shot` there is no delay; with cuts that are found too it ends the waiting."""
     wanted = fed(trimotion.Animator((96, 64), **QUICK), frames)
     with trimotion.Animator((96, 64), cuts="none", **QUICK) as animator:
-        assert animator.delay == 0
         for number, pixels in enumerate(frames):
             (one,) = animator.feed(pixels, new_shot=number == CUT)
             assert_same(one, wanted[number])
         assert animator.finish() == []
     with trimotion.Animator((96, 64), **QUICK) as animator:
-        assert animator.delay == AHEAD
         counts = [len(animator.feed(pixels, new_shot=n == CUT)) for n, pixels in enumerate(frames)]
         assert counts == [0, 0, 0, 0, 1, 1, 4, 0, 0, 0, 1, 1]
         for one in animator.finish():
@@ -124,7 +125,7 @@ def test_impossible_size(size: object) -> None:
 
 def test_frame_of_another_size_is_refused_and_forgotten(frames: list[np.ndarray]) -> None:
     """The animator goes on as if it had not been."""
-    wanted = fed(trimotion.Animator((96, 64), cuts="none", **QUICK), frames[:2])
+    wanted = fed(trimotion.Animator((96, 64), cuts="none", **QUICK), frames[:2], 0)
     with trimotion.Animator((96, 64), cuts="none", **QUICK) as animator:
         found = animator.feed(frames[0])
         with pytest.raises(trimotion.OptionError, match="64x96; this animator takes 96x64"):
@@ -215,3 +216,17 @@ def test_closed_track_says_so(track: Path, tmp_path: Path) -> None:
     (tmp_path / "x.mtrk").write_bytes(b"nothing")
     with pytest.raises(trimotion.TrackError, match="no mesh track"):
         trimotion.open_track(tmp_path / "x.mtrk")
+
+
+def test_failing_animator_is_closed(frames: list[np.ndarray], tmp_path: Path) -> None:
+    """What ends half-way cannot be gone on with, and says so: here the weights end too early."""
+    grey = np.full((64, 96, 3), 200, np.uint8)
+    for number in range(2):
+        samples.write_still(tmp_path / f"w_{number}.png", grey)
+    weights = str(tmp_path / "w_#.png")
+    with trimotion.Animator((96, 64), cuts="none", weights=weights, **QUICK) as animator:
+        assert [len(animator.feed(pixels)) for pixels in frames[:2]] == [1, 1]
+        with pytest.raises(trimotion.MediaError, match="no weights for frame 2"):
+            animator.feed(frames[2])
+        with pytest.raises(trimotion.OptionError, match="closed; make another"):
+            animator.feed(frames[3])

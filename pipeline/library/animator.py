@@ -1,26 +1,25 @@
 """Frames in as arrays, triangulations out: a clip that nobody has as a file."""
 
-from collections import deque
-from collections.abc import Iterable, Iterator
-from contextlib import ExitStack
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
 from dataclasses import replace
+from functools import partial
 from typing import Any, Unpack, cast
 
-from pipeline.animate import Solved, solved_frames, triangulator_of, weighed
+from pipeline.animate import Solved, prepared, solved_frames, triangulator_of
 from pipeline.build_job import build_job
 from pipeline.job import Job
 from pipeline.library.device import opened_device
 from pipeline.library.given import given_values
 from pipeline.library.keywords import AnimatorKeywords, PictureKeywords
-from pipeline.library.pixels import frame_of, weights_of
+from pipeline.library.pixels import frame_of, info_of, weights_of
+from pipeline.library.pushed import Pushed
 from pipeline.library.signature import with_keywords
 from pipeline.library.triangulation import Origin, Triangulation
 from pipeline.library.wording import worded
-from pipeline.shots import AHEAD, ShotFrame, with_shots
-from pipeline.steps import Step
-from stages.flows.passage import Passage
-from stages.flows.view import View
 from stages.frame import Frame
+from stages.media import MediaInfo
+from stages.triangulate import Triangulator
 from stages.weights import open_weights
 from warp_kernels.errors import OptionError
 from warp_kernels.raster import MAX_SIDE
@@ -51,28 +50,22 @@ class Animator:
 
         Raises:
             OptionError: If an option has an impossible value.
+            MediaError: If a file that an option names cannot be read.
         """
         self._size = _checked(size)
         self._job = _job_of("Animator", options)
         self._count = 0
         self._frames: dict[int, Frame] = {}
-        self._opened: set[int] = set()
-        self._inbox: deque[Frame] = deque()
+        self._line: Pushed[Frame, Solved] | None = None
+        self._is_closed = False
         self._stack = ExitStack()
-        device = opened_device(self._job.device, self._job.threads)
-        opened = self._stack.enter_context(device)
-        try:
-            self._triangulator = triangulator_of(self._job, self._size, opened)
-            self._weights = open_weights(self._job.weights, self._size, self._job.frame_range)
-            self._begin()
-        except BaseException:
-            self.close()
-            raise
-
-    @property
-    def delay(self) -> int:
-        """How many frames later `feed` gives a frame back."""
-        return AHEAD if self._job.cuts == "auto" else 0
+        with ExitStack() as failing:
+            device = opened_device(self._job.device, self._job.threads)
+            triangulator = triangulator_of(self._job, self._size, failing.enter_context(device))
+            info = info_of(self._size, "video")
+            self._solve = partial(_solved, job=self._job, triangulator=triangulator, info=info)
+            self._solve(iter(()))  # a list of cuts or a map of weights that cannot be read
+            self._stack = failing.pop_all()
 
     @worded()
     def feed(self, pixels: Any, *, new_shot: bool = False) -> list[Triangulation]:
@@ -80,8 +73,8 @@ class Animator:
 
         Args:
             pixels: Code values, [H, W, 3] uint8 in RGB, or [H, W] uint8 in grey; copied.
-            new_shot: Whether a shot begins here for certain. With `cuts="auto"` what was held
-                back is given back at once, and what comes begins like a new clip.
+            new_shot: Whether a shot begins here for certain: what was held back is given back,
+                and what comes is like a new clip.
 
         Returns:
             The frames that are ready, in order; none while a decision about a cut is pending.
@@ -96,16 +89,14 @@ class Animator:
                 f"pixels: a frame of {frame.width}x{frame.height}; this animator takes "
                 f"{self._size[0]}x{self._size[1]}, so make another one"
             )
-        ready = self._flush() if new_shot and self.delay else []
-        if new_shot:
-            self._opened.add(frame.index)
-        self._count += 1
-        self._frames[frame.index] = frame
-        self._inbox.append(frame)
-        self._waiting += 1
-        if self._waiting > self.delay:
-            ready.append(self._advance())
-        return ready
+        with self._closed_by_failure():
+            ready = self._rest() if new_shot else []
+            self._count += 1
+            self._frames[frame.index] = frame
+            if self._line is None:
+                self._line = Pushed(self._solve)
+            ready += self._line.push(frame)
+        return self._told(ready)
 
     @worded()
     def finish(self) -> list[Triangulation]:
@@ -115,12 +106,17 @@ class Animator:
             OptionError: If the animator is closed.
         """
         self._check_open()
-        return self._flush()
+        with self._closed_by_failure():
+            ready = self._rest()
+        return self._told(ready)
 
     def close(self) -> None:
         """Release the device; frames that are held back are dropped."""
         self._is_closed = True
         self._frames.clear()
+        line, self._line = self._line, None
+        if line is not None:
+            line.close()
         self._stack.close()
 
     def __enter__(self) -> "Animator":
@@ -133,42 +129,27 @@ class Animator:
         if self._is_closed:
             raise OptionError("the animator is closed; make another one")
 
-    def _begin(self) -> None:
-        """Begin a clip."""
-        self._is_closed = self._is_ended = False
-        self._waiting = 0
-        shots = self._marked(with_shots(self._taken(), self._job.cuts))
-        steps = weighed(_steps(shots, self._job), self._weights)
-        self._solved = solved_frames(steps, self._triangulator, self._job, None)
-
-    def _taken(self) -> Iterator[Frame]:
-        """Frames as they come; asked for no sooner than there is one, or the end."""
-        while self._inbox or not self._is_ended:
-            yield self._inbox.popleft()
-
-    def _marked(self, shot_frames: Iterable[ShotFrame]) -> Iterator[ShotFrame]:
-        """Shots also begin where the caller says so."""
-        for shot_frame in shot_frames:
-            is_told = shot_frame.frame.index in self._opened
-            self._opened.discard(shot_frame.frame.index)
-            yield replace(shot_frame, opens_shot=True) if is_told else shot_frame
-
-    def _flush(self) -> list[Triangulation]:
-        """What is held back; then a new clip begins."""
-        self._is_ended = True
-        ready = [self._advance() for _ in range(self._waiting)]
-        self._begin()
-        return ready
-
-    def _advance(self) -> Triangulation:
-        """Solve the next frame; what is interrupted half-way cannot be gone on with."""
+    @contextmanager
+    def _closed_by_failure(self) -> Iterator[None]:
+        """What ends half-way cannot be gone on with."""
         try:
-            solved = next(self._solved)
+            yield
         except BaseException:
             self.close()
             raise
-        self._waiting -= 1
-        return _told(solved, self._frames.pop(solved.snapshot.frame_index), self._job)
+
+    def _rest(self) -> list[Solved]:
+        """What is held back; the next frame begins another clip."""
+        rest = [] if self._line is None else self._line.finish()
+        self._line = None
+        return rest
+
+    def _told(self, ready: list[Solved]) -> list[Triangulation]:
+        """What the caller sees of frames."""
+        return [
+            _told(solved, self._frames.pop(solved.snapshot.frame_index), self._job)
+            for solved in ready
+        ]
 
 
 @with_keywords("triangulate")
@@ -183,38 +164,29 @@ def triangulate(pixels: Any, **options: Unpack[PictureKeywords]) -> Triangulatio
 
     Raises:
         OptionError: If the array is of another kind, or an option has an impossible value.
+        MediaError: If a file that an option names cannot be read.
     """
     frame = frame_of(pixels, 0)
     size = (frame.width, frame.height)
     named: Any = dict(options)
-    given = named.get("weights")
-    if hasattr(given, "__array__"):
-        frame = frame_of(frame.pixels, 0, weights_of(given, size))
+    if hasattr(named.get("weights"), "__array__"):
+        frame = replace(frame, weights=weights_of(named["weights"], size))
         named["weights"] = GIVEN
     job = _job_of("triangulate", named)
     with opened_device(job.device, job.threads) as device:
         triangulator = triangulator_of(job, size, device)
-        steps: Iterable[Step] = [Step(frame, None, 0)]
-        if job.weights not in (None, GIVEN):
-            steps = weighed(steps, open_weights(job.weights, size, job.frame_range))
-        (solved,) = solved_frames(steps, triangulator, job, None)
+        (solved,) = _solved(iter([frame]), job, triangulator, info_of(size, "image"))
         return _told(solved, frame, job)
 
 
-def _steps(shot_frames: Iterable[ShotFrame], job: Job) -> Iterator[Step]:
-    """Estimate the motion between the frames of a shot, as `pipeline.steps` does for a clip."""
-    earlier: View | None = None
-    shot = 0
-    for shot_frame in shot_frames:
-        frame = shot_frame.frame
-        later = View(frame.pixels)
-        passage: Passage | None = None
-        if earlier is None or shot_frame.opens_shot:
-            shot = frame.index
-        elif not job.independent:
-            passage = Passage.between(job.flow, earlier, later)
-        yield Step(frame, passage, shot)
-        earlier = later
+def _solved(
+    frames: Iterator[Frame], job: Job, triangulator: Triangulator, info: MediaInfo
+) -> Iterator[Solved]:
+    """Solve frames as those of a clip; files that options name are looked at before the first."""
+    path = None if job.weights == GIVEN else job.weights
+    weights = open_weights(path, (info.width, info.height), job.frame_range)
+    found = prepared(frames, info, weights, job, None, [])
+    return solved_frames(found, triangulator, job, None)
 
 
 def _told(solved: Solved, frame: Frame, job: Job) -> Triangulation:

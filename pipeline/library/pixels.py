@@ -1,11 +1,13 @@
 """Arrays that come from elsewhere, as frames."""
 
 from fractions import Fraction
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from stages.frame import Frame
+from stages.media import MediaInfo
 from warp_kernels.errors import OptionError
 from warp_kernels.raster import MAX_SIDE
 
@@ -13,14 +15,13 @@ RATE = Fraction(1, 25)
 """Arrays have no time; a frame must have one, and nothing depends on it."""
 
 
-def frame_of(pixels: Any, index: int, weights: np.ndarray | None = None) -> Frame:
+def frame_of(pixels: Any, index: int) -> Frame:
     """A frame with pixels of its own: the caller may go on with the array.
 
     Args:
         pixels: Code values, [H, W, 3] uint8 in RGB, or [H, W] uint8 in grey; anything that NumPy
             makes such an array of.
         index: Number of the frame.
-        weights: How much errors count, [H, W] uint8, or None for all alike.
 
     Raises:
         OptionError: If it is another array.
@@ -31,11 +32,45 @@ def frame_of(pixels: Any, index: int, weights: np.ndarray | None = None) -> Fram
         array = np.repeat(array[..., None], 3, axis=2)
     own = np.array(array, order="C")
     own.flags.writeable = False
-    return Frame(index, index, RATE, own, None if weights is None else np.maximum(weights, 1))
+    return Frame(index, index, RATE, own)
+
+
+def info_of(size: tuple[int, int], kind: str) -> MediaInfo:
+    """What is known about a source that is no file.
+
+    Args:
+        size: Width and height of its pictures [px].
+        kind: `image` for one picture, `video` for frames that follow each other.
+    """
+    width, height = size
+    return MediaInfo(
+        path=Path(),
+        kind=kind,
+        container="",
+        codec="",
+        pixel_format="rgb24",
+        width=width,
+        height=height,
+        coded_width=width,
+        coded_height=height,
+        rotation=0,
+        sample_aspect=Fraction(1),
+        time_base=RATE,
+        average_rate=1 / RATE,
+        frame_count=None,
+        start_time=Fraction(0),
+        duration=None,
+        color_matrix="rgb",
+        color_range="full",
+        hdr=None,
+        audio_codec=None,
+        audio_channels=None,
+        audio_rate=None,
+    )
 
 
 def weights_of(weights: Any, size: tuple[int, int]) -> np.ndarray:
-    """Weights of a picture.
+    """Weights of the pixels of a picture, [H, W] uint8; none is without.
 
     Args:
         weights: White (255) where errors count most, [H, W] uint8.
@@ -53,7 +88,7 @@ def weights_of(weights: Any, size: tuple[int, int]) -> np.ndarray:
         )
     if not array.any():
         raise OptionError("weights: black all over; make white (255) what counts most")
-    return array
+    return np.maximum(array, 1)
 
 
 def _check_kind(array: np.ndarray) -> None:
