@@ -17,20 +17,20 @@ from importlib import import_module
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from pipeline.library.animator import Animator as Animator
-    from pipeline.library.animator import triangulate as triangulate
     from pipeline.library.keywords import AnimateKeywords as AnimateKeywords
     from pipeline.library.keywords import AnimatorKeywords as AnimatorKeywords
     from pipeline.library.keywords import PictureKeywords as PictureKeywords
     from pipeline.library.keywords import RenderKeywords as RenderKeywords
     from pipeline.library.keywords import SolveKeywords as SolveKeywords
+    from pipeline.library.progress import FrameDone as FrameDone
     from pipeline.library.result import Result as Result
     from pipeline.library.runs import animate as animate
     from pipeline.library.runs import measure as measure
     from pipeline.library.runs import render as render
     from pipeline.library.runs import solve as solve
-    from pipeline.library.told import FrameDone as FrameDone
     from pipeline.library.track import Track as Track
     from pipeline.library.track import open_track as open_track
+    from pipeline.library.triangulate import triangulate as triangulate
     from pipeline.library.triangulation import Triangulation as Triangulation
     from pipeline.report import Report as Report
     from warp_kernels.errors import MediaError as MediaError
@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     __version__: str
 
 _HOMES = {
-    "pipeline.library.animator": ("Animator", "triangulate"),
+    "pipeline.library.animator": ("Animator",),
     "pipeline.library.keywords": (
         "AnimateKeywords",
         "AnimatorKeywords",
@@ -52,8 +52,9 @@ _HOMES = {
     ),
     "pipeline.library.result": ("Result",),
     "pipeline.library.runs": ("animate", "measure", "render", "solve"),
-    "pipeline.library.told": ("FrameDone",),
+    "pipeline.library.progress": ("FrameDone",),
     "pipeline.library.track": ("Track", "open_track"),
+    "pipeline.library.triangulate": ("triangulate",),
     "pipeline.library.triangulation": ("Triangulation",),
     "pipeline.report": ("Report",),
     "warp_kernels.errors": (

@@ -2,30 +2,22 @@
 
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
-from dataclasses import replace
 from functools import partial
 from typing import Any, Unpack, cast
 
-from pipeline.animate import Solved, prepared, solved_frames, triangulator_of
-from pipeline.build_job import build_job
-from pipeline.job import Job
+from pipeline.animate import Solved, triangulator_of
+from pipeline.library.arrays import job_without_files, solved_arrays, told
 from pipeline.library.device import opened_device
 from pipeline.library.given import given_values
-from pipeline.library.keywords import AnimatorKeywords, PictureKeywords
-from pipeline.library.pixels import frame_of, info_of, weights_of
+from pipeline.library.keywords import AnimatorKeywords
+from pipeline.library.pixels import frame_of, info_of
 from pipeline.library.pushed import Pushed
 from pipeline.library.signature import with_keywords
-from pipeline.library.triangulation import Origin, Triangulation
+from pipeline.library.triangulation import Triangulation
 from pipeline.library.wording import worded
 from stages.frame import Frame
-from stages.media import MediaInfo
-from stages.triangulate import Triangulator
-from stages.weights import open_weights
 from warp_kernels.errors import OptionError
 from warp_kernels.raster import MAX_SIDE
-
-GIVEN = "(an array)"
-"""Stands for the name of a map of weights that has none."""
 
 
 class Animator:
@@ -53,7 +45,7 @@ class Animator:
             MediaError: If a file that an option names cannot be read.
         """
         self._size = _checked(size)
-        self._job = _job_of("Animator", options)
+        self._job = job_without_files("Animator", options)
         self._count = 0
         self._frames: dict[int, Frame] = {}
         self._line: Pushed[Frame, Solved] | None = None
@@ -63,7 +55,9 @@ class Animator:
             device = opened_device(self._job.device, self._job.threads)
             triangulator = triangulator_of(self._job, self._size, failing.enter_context(device))
             info = info_of(self._size, "video")
-            self._solve = partial(_solved, job=self._job, triangulator=triangulator, info=info)
+            self._solve = partial(
+                solved_arrays, job=self._job, triangulator=triangulator, info=info
+            )
             self._solve(iter(()))  # a list of cuts or a map of weights that cannot be read
             self._stack = failing.pop_all()
 
@@ -147,63 +141,9 @@ class Animator:
     def _told(self, ready: list[Solved]) -> list[Triangulation]:
         """What the caller sees of frames."""
         return [
-            _told(solved, self._frames.pop(solved.snapshot.frame_index), self._job)
+            told(solved, self._frames.pop(solved.snapshot.frame_index), self._job)
             for solved in ready
         ]
-
-
-@with_keywords("triangulate")
-@worded()
-def triangulate(pixels: Any, **options: Unpack[PictureKeywords]) -> Triangulation:
-    """Triangulate one picture.
-
-    Args:
-        pixels: Code values, [H, W, 3] uint8 in RGB, or [H, W] uint8 in grey, or anything that
-            NumPy makes such an array of.
-        options: See below; `weights` may be an array, too, [H, W] uint8.
-
-    Raises:
-        OptionError: If the array is of another kind, or an option has an impossible value.
-        MediaError: If a file that an option names cannot be read.
-    """
-    frame = frame_of(pixels, 0)
-    size = (frame.width, frame.height)
-    named: Any = dict(options)
-    if hasattr(named.get("weights"), "__array__"):
-        frame = replace(frame, weights=weights_of(named["weights"], size))
-        named["weights"] = GIVEN
-    job = _job_of("triangulate", named)
-    with opened_device(job.device, job.threads) as device:
-        triangulator = triangulator_of(job, size, device)
-        (solved,) = _solved(iter([frame]), job, triangulator, info_of(size, "image"))
-        return _told(solved, frame, job)
-
-
-def _solved(
-    frames: Iterator[Frame], job: Job, triangulator: Triangulator, info: MediaInfo
-) -> Iterator[Solved]:
-    """Solve frames as those of a clip; files that options name are looked at before the first."""
-    path = None if job.weights == GIVEN else job.weights
-    weights = open_weights(path, (info.width, info.height), job.frame_range)
-    found = prepared(frames, info, weights, job, None, [])
-    return solved_frames(found, triangulator, job, None)
-
-
-def _told(solved: Solved, frame: Frame, job: Job) -> Triangulation:
-    """What the caller sees of a frame."""
-    origin = Origin(
-        color=job.triangulate.color,
-        shot=solved.shot,
-        frame=frame,
-        device=job.device,
-        threads=job.threads,
-    )
-    return Triangulation(solved.snapshot, origin)
-
-
-def _job_of(function: str, options: Any) -> Job:
-    """A job without files."""
-    return build_job({"source": "", "output": "", **given_values(function, options)})
 
 
 def _checked(size: Any) -> tuple[int, int]:

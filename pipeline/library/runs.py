@@ -16,9 +16,9 @@ from pipeline.library.keywords import (
     SolveKeywords,
 )
 from pipeline.library.processes import check_processes, explained_loss
+from pipeline.library.progress import Told, progress_for
 from pipeline.library.result import Result
 from pipeline.library.signature import with_keywords
-from pipeline.library.told import Told, progress_for
 from pipeline.library.wording import in_keywords, worded
 from pipeline.progress import Progress, Summary
 
