@@ -1,6 +1,7 @@
 """What a track was solved with, as keywords."""
 
 import dataclasses
+import importlib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -10,8 +11,6 @@ import numpy as np
 from pipeline.library.keywords import options_of
 from pipeline.track import Header
 from pipeline.track.agreement import FREE, FREE_GROUPS
-from stages.flows import FLOWS
-from stages.layouts import LAYOUTS
 
 
 def solved_with(header: Header) -> Mapping[str, Any]:
@@ -26,7 +25,8 @@ def solved_with(header: Header) -> Mapping[str, Any]:
     for keyword, option in options_of("solve").items():
         decides = option.group not in FREE_GROUPS and option.dest not in FREE
         if decides and option.dest in values:
-            told[keyword] = _plain(values[option.dest])
+            registry = option.declared.metadata.get("registry")
+            told[keyword] = _plain(values[option.dest], registry)
     return told
 
 
@@ -42,22 +42,29 @@ def _flat(options: Any) -> Mapping[str, Any]:
     return found
 
 
-def _plain(value: Any) -> Any:
-    """A value as it is given."""
-    if dataclasses.is_dataclass(value) and not isinstance(value, type):
-        return _spec(value)
+def _plain(value: Any, registry: str | None) -> Any:
+    """A value as it is given.
+
+    Args:
+        value: What the job holds.
+        registry: The registry whose members it names, as module:NAME, or None.
+    """
     if isinstance(value, tuple):
-        return [_plain(entry) for entry in value]
+        return [_plain(entry, registry) for entry in value]
+    if registry is not None and dataclasses.is_dataclass(value):
+        return _spec(value, registry)
     return str(value) if isinstance(value, Path) else value
 
 
-def _spec(member: Any) -> str:
+def _spec(member: Any, registry: str) -> str:
     """A member of a registry as `name:key=value,...`; a picture that it holds is left out."""
-    names = {cls: name for registry in (FLOWS, LAYOUTS) for name, cls in registry.items()}
+    module, _, table = registry.partition(":")
+    classes = getattr(importlib.import_module(module), table)
+    name = next(name for name, cls in classes.items() if cls is type(member))
+    values = {field.name: getattr(member, field.name) for field in dataclasses.fields(member)}
     pairs = [
-        f"{field.name}={getattr(member, field.name)}"
-        for field in dataclasses.fields(member)
-        if getattr(member, field.name) is not None
-        and not isinstance(getattr(member, field.name), np.ndarray)
+        f"{key}={value}"
+        for key, value in values.items()
+        if value is not None and not isinstance(value, np.ndarray)
     ]
-    return ":".join(filter(None, (names[type(member)], ",".join(pairs))))
+    return ":".join(filter(None, (name, ",".join(pairs))))
