@@ -1,6 +1,7 @@
 """`Animator` gives what `solve` gives, frame by frame; `open_track` gives it back."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -16,7 +17,6 @@ QUICK: trimotion.AnimatorKeywords = {
     "frame_iterations": 4,
     "threads": 1,
 }
-AHEAD = 4
 
 
 @pytest.fixture(scope="module")
@@ -38,15 +38,12 @@ def frames(stills: str) -> list[np.ndarray]:
         return [frame.pixels for frame in decoder]
 
 
-def fed(
-    animator: trimotion.Animator, frames: list[np.ndarray], delay: int = AHEAD
-) -> list[trimotion.Triangulation]:
-    """What becomes of frames; they come back in order, as late as is promised."""
+def fed(animator: trimotion.Animator, frames: list[np.ndarray]) -> list[trimotion.Triangulation]:
+    """What becomes of frames; they come back in order."""
     found = []
     with animator:
-        for number, pixels in enumerate(frames):
+        for pixels in frames:
             found += animator.feed(pixels)
-            assert len(found) == max(0, number + 1 - delay)
         found += animator.finish()
     assert [one.frame for one in found] == list(range(len(frames)))
     return found
@@ -69,8 +66,7 @@ def test_animator_gives_what_solve_gives(
 ) -> None:
     """To the bit, shots and ids as well, for cuts that are found and cuts that are ignored."""
     trimotion.solve(stills, tmp_path / "t.mtrk", **QUICK, **options)
-    delay = 0 if "cuts" in options else AHEAD
-    found = fed(trimotion.Animator((96, 64), **QUICK, **options), frames, delay)
+    found = fed(trimotion.Animator((96, 64), **QUICK, **options), frames)
     with trimotion.open_track(tmp_path / "t.mtrk") as track:
         for one, other in zip(found, track, strict=True):
             assert_same(one, other)
@@ -92,18 +88,29 @@ def test_weights_lie_over_all_frames(stills: str, frames: list[np.ndarray], tmp_
 
 
 def test_told_shots_are_as_good_as_found_ones(frames: list[np.ndarray]) -> None:
-    """With `new_shot` there is no delay; with cuts that are found too it ends the waiting."""
+    """Whether cuts are ignored or found as well."""
     wanted = fed(trimotion.Animator((96, 64), **QUICK), frames)
-    with trimotion.Animator((96, 64), cuts="none", **QUICK) as animator:
-        for number, pixels in enumerate(frames):
-            (one,) = animator.feed(pixels, new_shot=number == CUT)
-            assert_same(one, wanted[number])
-        assert animator.finish() == []
-    with trimotion.Animator((96, 64), **QUICK) as animator:
-        counts = [len(animator.feed(pixels, new_shot=n == CUT)) for n, pixels in enumerate(frames)]
-        assert counts == [0, 0, 0, 0, 1, 1, 4, 0, 0, 0, 1, 1]
-        for one in animator.finish():
-            assert_same(one, wanted[one.frame])
+    for cuts in ("none", "auto"):
+        with trimotion.Animator((96, 64), cuts=cuts, **QUICK) as animator:
+            found = []
+            for number, pixels in enumerate(frames):
+                found += animator.feed(pixels, new_shot=number == CUT)
+            found += animator.finish()
+        for one, other in zip(found, wanted, strict=True):
+            assert_same(one, other)
+
+
+def test_frames_come_as_late_as_promised(frames: list[np.ndarray]) -> None:
+    """At once if cuts are ignored, four frames later if they are found; told ones end the wait."""
+
+    def counts(**options: Any) -> list[int]:
+        """How many come back from each call."""
+        with trimotion.Animator((96, 64), **QUICK, **options) as animator:
+            fed = [len(animator.feed(pixels, new_shot=n == 6)) for n, pixels in enumerate(frames)]
+            return [*fed, len(animator.finish())]
+
+    assert counts(cuts="none") == [1] * COUNT + [0]
+    assert counts() == [0, 0, 0, 0, 1, 1, 4, 0, 0, 0, 1, 1, 4]
 
 
 def test_finished_animator_goes_on_with_a_new_shot(frames: list[np.ndarray]) -> None:
@@ -125,14 +132,14 @@ def test_impossible_size(size: object) -> None:
 
 def test_frame_of_another_size_is_refused_and_forgotten(frames: list[np.ndarray]) -> None:
     """The animator goes on as if it had not been."""
-    wanted = fed(trimotion.Animator((96, 64), cuts="none", **QUICK), frames[:2], 0)
-    with trimotion.Animator((96, 64), cuts="none", **QUICK) as animator:
+    wanted = fed(trimotion.Animator((96, 64), **QUICK), frames[:2])
+    with trimotion.Animator((96, 64), **QUICK) as animator:
         found = animator.feed(frames[0])
         with pytest.raises(trimotion.OptionError, match="64x96; this animator takes 96x64"):
             animator.feed(frames[0].transpose(1, 0, 2))
         with pytest.raises(trimotion.OptionError, match="pixels"):
             animator.feed(frames[0] / 255.0)
-        found += animator.feed(frames[1])
+        found += animator.feed(frames[1]) + animator.finish()
     assert_same(found[1], wanted[1])
 
 
@@ -224,9 +231,8 @@ def test_failing_animator_is_closed(frames: list[np.ndarray], tmp_path: Path) ->
     for number in range(2):
         samples.write_still(tmp_path / f"w_{number}.png", grey)
     weights = str(tmp_path / "w_#.png")
-    with trimotion.Animator((96, 64), cuts="none", weights=weights, **QUICK) as animator:
-        assert [len(animator.feed(pixels)) for pixels in frames[:2]] == [1, 1]
+    with trimotion.Animator((96, 64), weights=weights, **QUICK) as animator:
         with pytest.raises(trimotion.MediaError, match="no weights for frame 2"):
-            animator.feed(frames[2])
+            [animator.feed(pixels) for pixels in frames]
         with pytest.raises(trimotion.OptionError, match="closed; make another"):
             animator.feed(frames[3])
