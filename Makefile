@@ -28,6 +28,7 @@ lint: $(VENV)/.installed-dev
 	@$(BIN)/ruff check .
 	@$(BIN)/ruff format --check .
 	@$(BIN)/mypy
+	@$(BIN)/mypy --strict --follow-imports=silent tests/client_of_trimotion.py
 
 clean:
 	@rm -rf $(VENV) demo out build *.egg-info .pytest_cache .ruff_cache .mypy_cache .hypothesis

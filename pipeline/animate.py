@@ -21,7 +21,7 @@ from pipeline.progress import Progress
 from pipeline.rows_around import rows_around
 from pipeline.shots import with_shots
 from pipeline.source_pictures import source_pictures
-from pipeline.steps import Step, check_cuts, open_around, steps
+from pipeline.steps import Reached, Step, check_cuts, open_around, steps
 from pipeline.stream import Behind, ahead
 from pipeline.take import Take
 from pipeline.track import FrameRow, TrackReader, TrackWriter
@@ -155,7 +155,7 @@ def _convert(job: Job, progress: Progress, *, draws: bool) -> Animated:
             check_drawing(job, info)
         device = Device(job.device, job.threads)
         weights = open_weights(job.weights, (info.width, info.height), job.frame_range)
-        triangulator = _triangulator(job, info, device)
+        triangulator = triangulator_of(job, (info.width, info.height), device)
         drawing = Drawing(job, info, device) if draws else None
         tally = _Tally(progress, expected_frames(job.frame_range, info))
         notes = [] if past is None else past.notes
@@ -165,7 +165,7 @@ def _convert(job: Job, progress: Progress, *, draws: bool) -> Animated:
             with drawing or nullcontext(), closing(found), writer:
                 if past is not None:
                     _recall(job, tally, writer if draws else None)
-                for solved in _solve(found, triangulator, job, past):
+                for solved in solved_frames(found, triangulator, job, past):
                     writer.put(solved)
                     tally.add(solved.snapshot.mesh.triangle_count, solved.snapshot.rmse)
             if track is not None:
@@ -176,9 +176,14 @@ def _convert(job: Job, progress: Progress, *, draws: bool) -> Animated:
     return tally.result(begun, warnings, [*told, *notes, *made])
 
 
-def _triangulator(job: Job, info: MediaInfo, device: Device) -> Triangulator:
-    """What makes snapshots of a source for the looks that will be drawn."""
-    size = (info.width, info.height)
+def triangulator_of(job: Job, size: tuple[int, int], device: Device) -> Triangulator:
+    """What makes snapshots of a source for the looks that will be drawn.
+
+    Args:
+        job: Says how pictures become triangles, and the looks.
+        size: Width and height of the source, upright [px].
+        device: Where kernels run.
+    """
     return Triangulator(device, size, job.triangulate, job.fitted, weighted=job.weights is not None)
 
 
@@ -189,10 +194,30 @@ def _open_steps(
     past: Past | None,
     notes: list[str],
 ) -> Generator[Step, None, None]:
-    """Decode, find cuts and estimate motion ahead of the solution."""
+    """Decode and prepare frames ahead of the solution."""
     reached = None if past is None else past.reached
-    found = steps(with_shots(decoder, job.cuts), decoder.info, job, reached, notes)
-    return ahead(_weighed(found, weights), DECODED_AHEAD)
+    return ahead(prepared(decoder, decoder.info, weights, job, reached, notes), DECODED_AHEAD)
+
+
+def prepared(
+    frames: Iterable[Frame],
+    info: MediaInfo,
+    weights: EvenWeights | WeightMap,
+    job: Job,
+    reached: Reached | None,
+    notes: list[str],
+) -> Iterator[Step]:
+    """Find cuts, estimate motion and weigh: all that frames go through before they are solved.
+
+    Args:
+        frames: The frames of the range and around it.
+        info: Their source.
+        weights: Those of the job.
+        job: Says what is wanted.
+        reached: Where an earlier run ended, or None.
+        notes: Receives what the user should know, one sentence each.
+    """
+    return _weighed(steps(with_shots(frames, job.cuts), info, job, reached, notes), weights)
 
 
 def _weighed(found: Iterable[Step], weights: EvenWeights | WeightMap) -> Iterator[Step]:
@@ -209,12 +234,18 @@ def _weighed(found: Iterable[Step], weights: EvenWeights | WeightMap) -> Iterato
         yield replace(waiting.popleft(), frame=frame)
 
 
-def _solve(
+def solved_frames(
     found: Iterable[Step], triangulator: Triangulator, job: Job, past: Past | None
 ) -> Iterator[Solved]:
     """Triangulate frame after frame, each from the mesh of the one before.
 
     A picture that comes again, as in what is drawn for every other frame, keeps its mesh.
+
+    Args:
+        found: The frames, and the motion between them; one is taken for each that is given.
+        triangulator: Made by `triangulator_of` for the job.
+        job: Says how frames begin and what will be drawn.
+        past: What an earlier run left, or None.
     """
     snapshot = None if past is None else past.snapshot
     for step in found:
@@ -250,7 +281,7 @@ def _fitted(
         return
     around = FrameRange(rows[0].frame, rows[-1].frame, track.header.frame_range.step)
     weights = open_weights(job.weights, (info.width, info.height), around)
-    triangulator = _triangulator(job, info, device)
+    triangulator = triangulator_of(job, (info.width, info.height), device)
     wanted = {row.frame for row in rows}
     with open_decoder(job.source, around, read=job.read) as decoder:
         frames = (frame for frame in decoder if frame.index in wanted)

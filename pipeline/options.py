@@ -112,7 +112,7 @@ class Option:
         """What it does, with its default."""
         default: object = self.declared.default
         if self.declared.factory:
-            default = _member_of(self.declared.metadata["registry"], self.declared.factory)
+            default = member_of(self.declared.metadata["registry"], self.declared.factory)
         text = str(self.declared.metadata["help"])
         if self.is_switch and not self.switched:
             text = f"do not {text}"
@@ -142,6 +142,24 @@ class Option:
         return kinds.get(
             declared.kind.removesuffix(" | None"), declared.name.split("_")[-1].upper()
         )
+
+
+_SOURCE_ONLY = ("track", "resume", "fps", "page", "stream")
+"""Options that mean nothing once there is a track."""
+
+COMMAND_OPTIONS: dict[str, Callable[[Option], bool]] = {
+    "animate": lambda option: True,
+    "solve": lambda option: (
+        option.group not in ("look", "output") or option.dest in ("overwrite", "resume")
+    ),
+    "render": lambda option: (
+        (option.group in ("range", "look", "output") and option.dest not in _SOURCE_ONLY)
+        or option.dest in ("device", "threads")
+    ),
+    "plan": lambda option: option.group == "range" or option.dest == "cuts",
+    "measure": lambda option: option.group == "range",
+}
+"""Which options a command has."""
 
 
 @cache
@@ -242,7 +260,13 @@ def _flag_of(declared: DeclaredField) -> str:
     return f"no-{flag}" if declared.kind == "bool" and declared.default is True else flag
 
 
-def _member_of(registry: str, cls: str) -> str:
+def member_of(registry: str, cls: str) -> str:
+    """Name of a registry's member.
+
+    Args:
+        registry: Module and name, such as `stages.flows:FLOWS`.
+        cls: Name of the member's class.
+    """
     return next(name for name, other in registry_classes(registry).items() if other == cls)
 
 

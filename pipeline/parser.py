@@ -6,7 +6,12 @@ from collections.abc import Sequence
 from typing import Any, NoReturn
 
 from pipeline.flags import text_value, whole_number
-from pipeline.options import add_job_options, add_range_options, registry_help
+from pipeline.options import (
+    COMMAND_OPTIONS,
+    add_job_options,
+    add_range_options,
+    registry_help,
+)
 from pipeline.progress import CHOICES
 
 ABOUT = "Turn videos into coherent triangulated animations."
@@ -36,10 +41,6 @@ commands:
 trimotion COMMAND --help tells the options of a command.
 
 """
-
-
-_SOURCE_ONLY = ("track", "resume", "fps", "page", "stream")
-"""Options that mean nothing once there is a track."""
 
 
 class OneLineParser(argparse.ArgumentParser):
@@ -119,10 +120,7 @@ def _add_solve(commands: Any) -> None:
     )
     parser.add_argument("source", metavar="INPUT", type=text_value, help="what FFmpeg reads")
     _add_output(parser, "JOB.mtrk", "the mesh track")
-    add_job_options(
-        parser,
-        lambda o: o.group not in ("look", "output") or o.dest in ("overwrite", "resume"),
-    )
+    add_job_options(parser, COMMAND_OPTIONS["solve"])
     _add_messages(parser)
 
 
@@ -139,13 +137,7 @@ def _add_render(commands: Any) -> None:
     parser.add_argument(
         "--source", metavar="INPUT", type=text_value, help="where the source is now"
     )
-    add_job_options(
-        parser,
-        lambda o: (
-            (o.group in ("range", "look", "output") and o.dest not in _SOURCE_ONLY)
-            or o.dest in ("device", "threads")
-        ),
-    )
+    add_job_options(parser, COMMAND_OPTIONS["render"])
     _add_messages(parser)
 
 
@@ -162,7 +154,7 @@ def _add_plan(commands: Any) -> None:
         "--parts", metavar="N", type=whole_number, help="at most so many (default: one a shot)"
     )
     parser.add_argument("--json", action="store_true", help="print JSON")
-    add_job_options(parser, lambda o: o.group == "range" or o.dest == "cuts")
+    add_job_options(parser, COMMAND_OPTIONS["plan"])
 
 
 def _add_join(commands: Any) -> None:

@@ -47,6 +47,10 @@ class PartError(TrimotionError):
         self.exit_code = exit_code
 
 
+class LostPartError(PartError):
+    """A process that ended without a word."""
+
+
 def animate_in_parts(job: Job, progress: Progress) -> Animated:
     """Solve shots side by side, then draw them.
 
@@ -190,7 +194,7 @@ class _Crew:
     def _look_after(self) -> None:
         for process in self._processes:
             if process.exitcode is not None and self._reports.empty():
-                raise PartError(
+                raise LostPartError(
                     f"a process of --jobs died (code {process.exitcode}); go on with --resume, "
                     "and fewer --jobs if memory was short",
                     1,

@@ -1,10 +1,10 @@
 """Options from a TOML file: `triangles = 3000`, `style = ["flat", "edges:width=1"]`."""
 
 import tomllib
-from argparse import ArgumentTypeError
 from pathlib import Path
 
-from pipeline.options import Option, job_options
+from pipeline.option_value import option_value
+from pipeline.options import job_options
 from pipeline.text_file import read_text
 from warp_kernels.errors import OptionError
 
@@ -47,30 +47,5 @@ def read_preset(name: str) -> dict[str, object]:
             raise OptionError(
                 f"--preset {name}: unknown option {key!r}; the options are {', '.join(options)}"
             )
-        values[option.dest] = _value_of(option, value, f"--preset {name}: {key}")
+        values[option.dest] = option_value(option, value, f"--preset {name}: {key}")
     return values
-
-
-def _value_of(option: Option, value: object, what: str) -> object:
-    """A value of the file, as the command line would give it."""
-    if option.is_switch:
-        if not isinstance(value, bool):
-            raise OptionError(f"{what} = {value!r}: write true or false")
-        return option.switched if value else not option.switched
-    if option.is_repeatable:
-        entries = value if isinstance(value, list) else [value]
-        return [_single(option, entry, what) for entry in entries]
-    return _single(option, value, what)
-
-
-def _single(option: Option, value: object, what: str) -> object:
-    """One value, read by the same function as on the command line."""
-    if isinstance(value, bool) or not isinstance(value, str | int | float):
-        raise OptionError(f"{what} = {value!r}: write a number or a text in quotes")
-    try:
-        result = option.read(str(value))
-    except ArgumentTypeError as error:
-        raise OptionError(f"{what}: {error}") from error
-    if option.choices is not None and result not in option.choices:
-        raise OptionError(f"{what} = {value!r}: choose from {', '.join(option.choices)}")
-    return result

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import PurePosixPath
 
-LEVELS = {"warp_kernels": 0, "stages": 1, "pipeline": 2}
+LEVELS = {"warp_kernels": 0, "stages": 1, "pipeline": 2, "trimotion": 3}
 """A package imports from its own level and from lower ones."""
 
 IMPORT_HOMES = {

@@ -1,0 +1,164 @@
+"""Options as keywords: their types, for type checkers, and which function takes which.
+
+A new option of the command line needs one line here; `tests/test_library.py` says where.
+"""
+
+from collections.abc import Callable, Sequence
+from os import PathLike
+from typing import Any, TypedDict
+
+from pipeline.options import COMMAND_OPTIONS, Option, job_options
+
+Name = str | PathLike[str]
+"""The name of a file."""
+
+
+class RangeKeywords(TypedDict, total=False):
+    """Which frames."""
+
+    frames: str | int
+    start: str | float
+    end: str | float
+
+
+class DeviceKeywords(TypedDict, total=False):
+    """Where kernels run."""
+
+    device: str
+    threads: int
+
+
+class ShapeKeywords(DeviceKeywords, total=False):
+    """How pictures become triangles."""
+
+    seed: int
+    layout: str
+    color: str
+    iterations: int
+    topology: str
+    sums: str
+    space: str
+    regularity: float
+    trust_region: float
+    triangles: int
+    error: float | None
+    quality: float | None
+    max_area: float | None
+
+
+class PictureKeywords(ShapeKeywords, total=False):
+    """How one picture becomes triangles; weights may be an array."""
+
+    weights: Any
+
+
+class AnimatorKeywords(ShapeKeywords, total=False):
+    """How frames that follow each other become triangles."""
+
+    weights: Name | None
+
+    frame_iterations: int
+    flow: str
+    cuts: Name
+    independent: bool
+
+
+class SolveKeywords(AnimatorKeywords, RangeKeywords, total=False):
+    """How a clip becomes triangles."""
+
+    preset: Name | None
+    jobs: int
+    overwrite: bool
+    resume: bool
+
+
+class LookKeywords(TypedDict, total=False):
+    """What triangles look like."""
+
+    styles: str | Sequence[str]
+    regions: str | Sequence[str]
+    size: str | tuple[int, int] | None
+    scale: float | None
+    blend: int
+    smooth: float
+
+
+class OutputKeywords(TypedDict, total=False):
+    """How an output is written."""
+
+    codec: str | None
+    crf: int | None
+    pixel_format: str | None
+    encoder_preset: str | None
+    audio: bool
+    overwrite: bool
+
+
+class RenderKeywords(RangeKeywords, LookKeywords, OutputKeywords, DeviceKeywords, total=False):
+    """How a mesh track is drawn."""
+
+    preset: Name | None
+
+
+class AnimateKeywords(SolveKeywords, LookKeywords, OutputKeywords, total=False):
+    """How a clip becomes another one."""
+
+    track: Name | None
+
+
+class DrawKeywords(DeviceKeywords, total=False):
+    """How one frame is drawn."""
+
+    styles: str | Sequence[str]
+    size: str | tuple[int, int] | None
+    scale: float | None
+
+
+def keyword_of(option: Option) -> str:
+    """The keyword of an option: what can be repeated is a list and has the name of one.
+
+    Args:
+        option: An option of the command line.
+    """
+    if option.is_repeatable or option.is_switch:
+        return option.dest
+    return option.flag.replace("-", "_")
+
+
+def options_of(function: str) -> dict[str, Option]:
+    """The options that a function takes, by keyword.
+
+    Args:
+        function: Its name, such as `animate`.
+    """
+    wanted = TAKEN[function]
+    return {keyword_of(option): option for option in job_options() if wanted(option)}
+
+
+def _for_pictures(option: Option) -> bool:
+    """Whether an option says how one picture becomes triangles."""
+    described = option.group == "triangles" and option.dest != "frame_iterations"
+    return described or option.dest in ("seed", "device", "threads")
+
+
+TAKEN: dict[str, Callable[[Option], bool]] = {
+    **{name: COMMAND_OPTIONS[name] for name in ("animate", "solve", "render", "measure")},
+    "triangulate": _for_pictures,
+    "Animator": lambda option: _for_pictures(option) or option.group in ("triangles", "motion"),
+    "draw": lambda option: option.dest in ("styles", "output_size", "scale", "device", "threads"),
+}
+"""Which options a function takes."""
+
+KEYWORDS: dict[str, Any] = {
+    "animate": AnimateKeywords,
+    "solve": SolveKeywords,
+    "render": RenderKeywords,
+    "measure": RangeKeywords,
+    "triangulate": PictureKeywords,
+    "Animator": AnimatorKeywords,
+    "draw": DrawKeywords,
+}
+"""Their types."""
+
+PRESET = frozenset({"animate", "solve", "render"})
+"""Functions that take a preset besides."""

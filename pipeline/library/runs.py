@@ -1,0 +1,193 @@
+"""`animate`, `solve`, `render` and `measure` as functions: the commands, with options as keywords.
+
+What is heavy is imported by the calls.
+"""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Unpack, cast
+
+from pipeline.library.given import file_name, given_values
+from pipeline.library.keywords import (
+    AnimateKeywords,
+    Name,
+    RangeKeywords,
+    RenderKeywords,
+    SolveKeywords,
+)
+from pipeline.library.processes import check_processes, explained_loss
+from pipeline.library.progress import Told, progress_for
+from pipeline.library.result import Result
+from pipeline.library.signature import with_keywords
+from pipeline.library.wording import in_keywords, worded
+from pipeline.progress import Progress, Summary
+
+if TYPE_CHECKING:
+    from pipeline.animate import Animated
+    from pipeline.job import Job
+    from pipeline.report import Report
+
+
+@with_keywords("animate")
+@worded()
+def animate(
+    source: Name, output: Name, *, progress: Told = None, **options: Unpack[AnimateKeywords]
+) -> Result:
+    """Convert a video, a still or numbered stills into triangles, as `trimotion animate` does.
+
+    Args:
+        source: What FFmpeg reads, or a pattern such as `shot_####.png`.
+        output: mp4, mov, mkv, webm, gif, a still, or a pattern; appears when all is done.
+        progress: None for silence, True for a bar or lines on the error stream, or a function
+            that is given a `FrameDone` for every frame; what it raises ends the run.
+        options: See below.
+
+    Raises:
+        TrimotionError: One of its kinds; the message is one line that ends with a remedy.
+    """
+    job = _job("animate", source, output, options)
+    with progress_for(progress) as told, explained_loss(job.jobs):
+        if job.jobs > 1 or job.followed:
+            from pipeline.parts import animate_in_parts
+
+            return _result(animate_in_parts(job, told), job.output, told)
+        from pipeline.animate import animate as animate_at_once
+
+        return _result(animate_at_once(job, told), job.output, told)
+
+
+@with_keywords("solve")
+@worded()
+def solve(
+    source: Name, output: Name, *, progress: Told = None, **options: Unpack[SolveKeywords]
+) -> Result:
+    """Convert a source to a mesh track, from which any look can be drawn.
+
+    Args:
+        source: What FFmpeg reads, or a pattern such as `shot_####.png`.
+        output: The track, `NAME.mtrk`; it keeps what was solved if the run is interrupted.
+        progress: See `animate`.
+        options: See below.
+
+    Raises:
+        TrimotionError: One of its kinds; the message is one line that ends with a remedy.
+    """
+    # Looks, which a preset may hold, do not belong to a track.
+    fixed = {"track": file_name("output", output), "styles": (), "regions": ()}
+    job = _job("solve", source, output, options, **fixed)
+    with progress_for(progress) as told, explained_loss(job.jobs):
+        if job.jobs > 1:
+            from pipeline.parts import solve_in_parts
+
+            return _result(solve_in_parts(job, told), job.output, told)
+        from pipeline.animate import solve as solve_at_once
+
+        return _result(solve_at_once(job, told), job.output, told)
+
+
+@with_keywords("render")
+@worded()
+def render(
+    track: Name,
+    output: Name,
+    *,
+    source: Name | None = None,
+    progress: Told = None,
+    **options: Unpack[RenderKeywords],
+) -> Result:
+    """Draw a mesh track, or a part of it, in any style and size.
+
+    Args:
+        track: A file that `solve` wrote.
+        output: What `animate` writes.
+        source: Where the source is now, if it was moved and is needed.
+        progress: See `animate`.
+        options: See below.
+
+    Raises:
+        TrimotionError: One of its kinds; the message is one line that ends with a remedy.
+    """
+    moved = None if source is None else Path(file_name("source", source))
+    look = _job("render", file_name("track", track), output, options, track=None)
+    from pipeline.animate import render as draw
+    from pipeline.render_job import render_job
+    from pipeline.track import TrackReader
+
+    with TrackReader(look.source) as reader, progress_for(progress) as told:
+        made = render_job(look, reader, moved)
+        drawn = draw(made.job, reader, made.info, told)
+        return _result(drawn, look.output, told, made.notes, made.warnings)
+
+
+@with_keywords("measure")
+@worded()
+def measure(
+    source: Name,
+    output: Name,
+    *,
+    track: Name | None = None,
+    progress: Told = None,
+    **options: Unpack[RangeKeywords],
+) -> "Report":
+    """Compare an output with its source, frame by frame.
+
+    Args:
+        source: What was converted.
+        output: What came out; scaled to the source's size if it has another.
+        track: The track from which it was drawn, if its meshes are to be measured.
+        progress: See `animate`.
+        options: See below.
+
+    Raises:
+        TrimotionError: One of its kinds; the message is one line that ends with a remedy.
+    """
+    from pipeline.build_job import frame_range
+    from pipeline.measure import measure as compare
+
+    wanted = frame_range(given_values("measure", options))
+    names = Path(file_name("source", source)), Path(file_name("output", output))
+    held = None if track is None else Path(file_name("track", track))
+    with progress_for(progress) as told:
+        return compare(*names, wanted, held, told)
+
+
+def _job(
+    function: str, source: Name, output: Name, options: Mapping[str, Any], **fixed: object
+) -> "Job":
+    """The job that a call describes.
+
+    Args:
+        function: What was called.
+        source: Its source.
+        output: Its output.
+        options: Its keywords.
+        fixed: What the function decides itself.
+    """
+    names = {"source": file_name("source", source), "output": file_name("output", output)}
+    values = given_values(function, options)
+    check_processes(cast(int, values.get("jobs", 1)))
+    from pipeline.build_job import build_job
+
+    return build_job({**values, **names, **fixed})
+
+
+def _result(
+    animated: "Animated",
+    output: Path,
+    told: Progress,
+    notes: tuple[str, ...] = (),
+    warnings: tuple[str, ...] = (),
+) -> Result:
+    """What came of a run, told to those who want to be."""
+    result = Result(
+        output=output,
+        frames=animated.frames,
+        seconds=animated.seconds,
+        mean_rmse=animated.mean_rmse,
+        notes=tuple(in_keywords(note) for note in (*notes, *animated.notes)),
+        warnings=tuple(in_keywords(text) for text in (*warnings, *animated.warnings)),
+    )
+    for text in result.warnings:
+        told.warn(text)
+    told.finish(Summary(result.frames, result.seconds, result.mean_rmse, output))
+    return result
