@@ -1,6 +1,7 @@
 """Values of options from a file or a program, read as the command line reads its texts."""
 
 from argparse import ArgumentTypeError
+from fractions import Fraction
 
 from pipeline.options import Option
 from warp_kernels.errors import OptionError
@@ -30,7 +31,7 @@ def option_value(option: Option, value: object, what: str, sign: str = " = ") ->
 
 def _single(option: Option, value: object, what: str, sign: str) -> object:
     """One value, read by the same function as on the command line."""
-    if isinstance(value, bool) or not isinstance(value, str | int | float):
+    if isinstance(value, bool) or not isinstance(value, str | int | float | Fraction):
         raise OptionError(f"{what}{sign}{value!r}: write a number or a text in quotes")
     try:
         result = option.read(str(value))

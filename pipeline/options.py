@@ -157,7 +157,7 @@ COMMAND_OPTIONS: dict[str, Callable[[Option], bool]] = {
         or option.dest in ("device", "threads")
     ),
     "plan": lambda option: option.group == "range" or option.dest == "cuts",
-    "measure": lambda option: option.group == "range",
+    "measure": lambda option: option.declared in RANGE_FIELDS,
 }
 """Which options a command has."""
 

@@ -48,6 +48,10 @@ def commands(folder: Path, bad: Path) -> list[tuple[object, ...]]:
     ]
 
 
+WRITING = (2, 3)
+"""Those of them that write one as well."""
+
+
 @pytest.mark.parametrize("tenth", range(10))
 def test_bad_track_is_one_line(tenth: int, folder: Path, capsys) -> None:
     """Exit code 3 and the file's name, and nothing is written.
@@ -57,6 +61,9 @@ def test_bad_track_is_one_line(tenth: int, folder: Path, capsys) -> None:
     for number in range(tenth, COUNT, 10):
         bad = copy_of(folder / "good.mtrk", folder, number)
         turn = (number + number // len(NAMES)) % 6
+        if NAMES[number % len(NAMES)] == "folder" and turn in WRITING:
+            discard(bad)  # no bad track: a new one is written into it
+            continue
         command = commands(folder, bad)[turn]
         code = main([*map(str, command)])
         captured = capsys.readouterr()

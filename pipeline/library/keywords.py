@@ -4,6 +4,7 @@ A new option of the command line needs one line here; `tests/test_library.py` sa
 """
 
 from collections.abc import Callable, Sequence
+from fractions import Fraction
 from os import PathLike
 from typing import Any, TypedDict
 
@@ -19,6 +20,14 @@ class RangeKeywords(TypedDict, total=False):
     frames: str | int
     start: str | float
     end: str | float
+
+
+class SourceKeywords(RangeKeywords, total=False):
+    """Which frames, and how the source is read."""
+
+    fps: str | float | Fraction | None
+    page: int | None
+    stream: int | None
 
 
 class DeviceKeywords(TypedDict, total=False):
@@ -63,7 +72,7 @@ class AnimatorKeywords(ShapeKeywords, total=False):
     independent: bool
 
 
-class SolveKeywords(AnimatorKeywords, RangeKeywords, total=False):
+class SolveKeywords(AnimatorKeywords, SourceKeywords, total=False):
     """How a clip becomes triangles."""
 
     preset: Name | None

@@ -64,8 +64,8 @@ CREATE TABLE topologies (
 );
 """
 
-LIMITS = "CREATE TABLE IF NOT EXISTS limits (frame INTEGER PRIMARY KEY, limits BLOB NOT NULL)"
-"""Added to a track that has no such table when a run goes on with it."""
+LIMITS = "CREATE TABLE limits (frame INTEGER PRIMARY KEY, limits BLOB NOT NULL)"
+"""A table that tracks of earlier programs lack."""
 
 TABLES = ("frames", "meshes", "topologies", "limits")
 """The tables whose rows belong to frames, `frame` first."""
@@ -133,6 +133,12 @@ def open_existing(path: Path) -> sqlite3.Connection:
             connection.close()
             raise
     return connection
+
+
+def complete(connection: sqlite3.Connection) -> None:
+    """Give a track of an earlier program, with which a run goes on, the table that it lacks."""
+    if not has_table(connection, "limits"):
+        connection.execute(LIMITS)
 
 
 def has_table(connection: sqlite3.Connection, table: str, schema: str = "main") -> bool:
@@ -248,6 +254,8 @@ def _check_form(path: Path, connection: sqlite3.Connection) -> None:
                 f"{path}: the track is damaged (its table {name} is missing or has another form); "
                 "take a copy of it, or solve again"
             )
+    if found.get(("table", "limits")) == LIMITS:
+        del found["table", "limits"]
     if found:
         raise TrackError(
             f"{path}: the track is damaged (it holds {', '.join(map(repr, sorted(found)[0]))}, "

@@ -11,8 +11,8 @@ import numpy as np
 from pipeline.track.blobs import pack
 from pipeline.track.header import Header, write_header
 from pipeline.track.schema import (
-    LIMITS,
     MOST_TRIANGLES,
+    complete,
     create,
     open_existing,
     put_in_place,
@@ -63,7 +63,7 @@ class TrackWriter:
         writer._connection = open_existing(path)
         with writing(path):
             write_header(writer._connection, writer._header)
-            writer._connection.execute(LIMITS)
+            complete(writer._connection)
             (writer._holder,) = writer._connection.execute(
                 "SELECT topology FROM frames WHERE frame = ?", (last.frame_index,)
             ).fetchone()
