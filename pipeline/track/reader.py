@@ -141,7 +141,7 @@ class TrackReader:
             next_vertex_id=next_ids[0],
             next_triangle_id=next_ids[1],
         )
-        counts = unpack(counts, "<i8", (T,))
+        covered = unpack(counts, "<i8", (T,))
         colors = unpack(coefficients, "<f8", (T, CHANNELS, model.term_count))
         return Snapshot(
             frame_index=frame,
@@ -149,9 +149,9 @@ class TrackReader:
             time_base=Fraction(info.time_base),
             mesh=mesh,
             model=model,
-            coefficients=colors[color_owners(mesh, counts)],  # black in tracks of old programs
+            coefficients=colors[color_owners(mesh, covered)],  # black in tracks of old programs
             energies=unpack(energies, "<f8", (T,)),
-            counts=counts,
+            counts=covered,
             limits=self._limits(frame, T),
         )
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from stages.appraise import Appraiser
-from stages.collapse import collapse_slivers
+from stages.collapse import collapse_slivers, press_slivers
 from stages.divide import divide_large
 from stages.edits import (
     collapse_edges,
@@ -19,7 +19,7 @@ from stages.mesh import Mesh
 from stages.topology.goal import SLIVER_HEIGHT, Goal
 from stages.topology.growth import Growth
 from stages.topology.ranking import LEAST_GAIN, ranked_collapses, ranked_flips, ranked_splits
-from stages.topology.slivers import remove_slivers
+from stages.topology.slivers import sliver_changes
 
 TWICE = Growth(start=1.0, peak=2.0, grown=0.2, settled=0.9)
 """Twice the triangles at first: what is then taken away, one vertex at a time, are those that
@@ -71,23 +71,37 @@ class Energy:
         appraiser.limit(goal.largest_area)
         mesh = divide_large(mesh, goal.largest_area)
         if goal.calm:
-            mesh = remove_slivers(mesh, appraiser, CALM_SLIVER_HEIGHT, goal.largest_area)
+            thin = np.flatnonzero(mesh.heights < CALM_SLIVER_HEIGHT)
+            mesh = press_slivers(mesh, thin, CALM_SLIVER_HEIGHT)
         else:
             mesh = collapse_slivers(mesh, SLIVER_HEIGHT, most_rounds=SLIVER_ROUNDS)
         free = np.ones(mesh.triangle_count, dtype=bool)
+        slivers, turned = self._slivers(mesh, appraiser, goal, free)
         flips = self._flips(mesh, appraiser, goal)
+        flips = flips[free[edge_triangles(mesh, flips)].all(axis=1)]
         flips = flips[independent_flips(mesh, flips)]
         if self._is_growing(mesh, goal) and len(flips):
             mesh, flips = flip_edges(mesh, flips), flips[:0]
         free[edge_triangles(mesh, flips)] = False
-        splits, gains, points = self._splits(mesh, appraiser, goal)
-        going = self._collapses(mesh, appraiser, goal, free, gains)
-        lost = np.where(mesh.twins[going] >= 0, 2, 1).sum()
-        some = _affordable(mesh, splits, free, int(goal.count - mesh.triangle_count + lost))
+        missing = goal.count - mesh.triangle_count + _lost(mesh, slivers)
+        splits, gains, points = self._splits(mesh, appraiser, goal, missing)
+        going = self._collapses(mesh, appraiser, goal, free, gains, missing)
+        some = _affordable(mesh, splits, free, missing + _lost(mesh, going))
+        going, flips = np.concatenate([slivers, going]), np.concatenate([turned, flips])
         # edits that do not touch each other leave each other's half-edges where they are
         mesh = flip_edges(mesh, flips) if len(flips) else mesh
         mesh = split_edges(mesh, splits[some], points[some]) if len(some) else mesh
         return collapse_edges(mesh, going) if len(going) else mesh
+
+    def _slivers(
+        self, mesh: Mesh, appraiser: Appraiser, goal: Goal, free: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Collapses and flips of slivers in a followed picture; `free` is updated."""
+        if not goal.calm:
+            nothing = np.empty(0, dtype=np.int64)
+            return nothing, nothing
+        appraiser.energies(mesh)
+        return sliver_changes(mesh, appraiser, CALM_SLIVER_HEIGHT, goal.largest_area, free)
 
     def _flips(self, mesh: Mesh, appraiser: Appraiser, goal: Goal) -> np.ndarray:
         """Edges whose flip pays, best first."""
@@ -97,11 +111,10 @@ class Energy:
         return ranked_flips(mesh, appraiser, self.calm_flip, floor)
 
     def _splits(
-        self, mesh: Mesh, appraiser: Appraiser, goal: Goal
+        self, mesh: Mesh, appraiser: Appraiser, goal: Goal, missing: int
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Edges worth splitting, what each saves per new triangle, and the places; best first."""
-        missing = max(0, goal.count - mesh.triangle_count)
-        most = (missing + 1) // 2 + self._relocations(mesh, goal)
+        most = (max(0, missing) + 1) // 2 + self._relocations(mesh, goal)
         edges, gains, points = ranked_splits(mesh, appraiser, most)
         wanted = gains > LEAST_GAIN
         if goal.threshold is not None:
@@ -111,7 +124,13 @@ class Energy:
         return edges[wanted], gains[wanted], points[wanted]
 
     def _collapses(
-        self, mesh: Mesh, appraiser: Appraiser, goal: Goal, free: np.ndarray, gains: np.ndarray
+        self,
+        mesh: Mesh,
+        appraiser: Appraiser,
+        goal: Goal,
+        free: np.ndarray,
+        gains: np.ndarray,
+        missing: int,
     ) -> np.ndarray:
         """Choose the vertices that are missed least, by half-edges out of them.
 
@@ -124,8 +143,9 @@ class Energy:
             goal: What to reach.
             free: Triangles that no change has claimed yet, [T] bool; updated.
             gains: What splits save per triangle, best first.
+            missing: Triangles below the count; below 0 where there are too many.
         """
-        excess = max(0, (mesh.triangle_count - goal.count + 1) // 2)
+        excess = max(0, (1 - missing) // 2)
         most = excess + self._relocations(mesh, goal)
         if most == 0:
             return np.empty(0, dtype=np.int64)
@@ -156,6 +176,11 @@ class Energy:
         if self._is_growing(mesh, goal):
             return 0
         return int((self.calm_relocated if goal.calm else self.relocated) * goal.count)
+
+
+def _lost(mesh: Mesh, collapses: np.ndarray) -> int:
+    """Triangles that vanish with collapses of half-edges [N]."""
+    return int(np.where(mesh.twins[collapses] >= 0, 2, 1).sum())
 
 
 def _away_from(mesh: Mesh, half_edges: np.ndarray, free: np.ndarray) -> np.ndarray:

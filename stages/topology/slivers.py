@@ -1,64 +1,60 @@
-"""In a followed picture: take away thin triangles and those without a pixel where it is cheap."""
+"""In a followed picture: which thin triangles and which without a pixel can go cheaply."""
 
 import numpy as np
 
 from stages.appraise import Appraiser
-from stages.collapse import heights_around, press_slivers, raising_flips
-from stages.edits import collapse_edges, flip_edges, independent_collapses, independent_flips
+from stages.collapse import heights_around, raising_flips
+from stages.edits import independent_collapses, independent_flips
 from stages.edits.collapse_edges import keeps_border
-from stages.edits.neighbourhood import edge_ends
+from stages.edits.neighbourhood import edge_ends, edge_triangles, stars
 from stages.mesh import Mesh
 
-ROUNDS = 2
-"""Rounds of edits: what is left comes up again with the next look at the topology."""
 AFFORDED = 1.0
 """Most that one change may cost, as a part of the mean energy of a triangle: what hides between
 pixels does no harm, and what is torn open for it flashes up."""
 
 
-def remove_slivers(
-    mesh: Mesh, appraiser: Appraiser, min_height: float, largest_area: float
-) -> Mesh:
-    """Collapse slivers on the edge that costs least energy, or flip them, where that costs little.
+def sliver_changes(
+    mesh: Mesh, appraiser: Appraiser, min_height: float, largest_area: float, free: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Collapses of slivers on the edges that cost least energy, and flips where none is cheap.
 
-    Slivers are triangles below a height and those that cover no pixel's centre. Thin ones that lie
-    flat on the border are pressed onto it.
+    Slivers are triangles below a height and those that cover no pixel's centre. No triangle around
+    one becomes a worse sliver. What is too dear stays, and comes up again with the next look.
 
     Args:
-        mesh: A valid mesh.
-        appraiser: Measures it.
+        mesh: The measured mesh.
+        appraiser: Has measured it.
         min_height: Triangles of a smallest height below this shall go [px].
         largest_area: No triangle may become larger [px^2].
+        free: Triangles that no change has claimed yet, [T] bool; updated.
 
     Returns:
-        A valid mesh with as many triangles or fewer.
+        Half-edges whose origins move into their destinations, and edges to flip.
 
     Deviation: the paper collapses small triangles on their shortest edge, whatever that does to
         the picture (Sec. 3.4).
     """
-    for _ in range(ROUNDS):
-        appraiser.limit(largest_area, is_height_free=True)
-        most = AFFORDED * appraiser.energies(mesh).mean()
-        thin = mesh.heights < min_height
-        slivers = np.flatnonzero(thin | (appraiser.counts == 0))
-        if not len(slivers):
-            break
-        mended = press_slivers(mesh, np.flatnonzero(thin), min_height)
-        if mended is mesh:
-            mended = _collapse(mesh, appraiser, slivers, min_height, most)
-        if mended is mesh:
-            mended = _flip(mesh, appraiser, slivers, most)
-        if mended is mesh:
-            break
-        mesh = mended
+    slivers = np.flatnonzero((mesh.heights < min_height) | (appraiser.counts == 0))
+    if not len(slivers):
+        return slivers, slivers
+    most = AFFORDED * appraiser.energies(mesh).mean()
+    appraiser.limit(largest_area, is_height_free=True)
+    going = _collapses(mesh, appraiser, slivers, min_height, most)
+    _, corners = stars(mesh, mesh.triangles.reshape(-1)[going])
+    free[corners // 3] = False
+    slivers = slivers[free[slivers]]
+    flips = _flips(mesh, appraiser, slivers[np.argsort(mesh.heights[slivers])], most)
+    flips = flips[free[edge_triangles(mesh, flips)].all(axis=1)]
+    free[edge_triangles(mesh, flips)] = False
     appraiser.limit(largest_area)
-    return mesh
+    return going, flips
 
 
-def _collapse(
+def _collapses(
     mesh: Mesh, appraiser: Appraiser, slivers: np.ndarray, min_height: float, most: float
-) -> Mesh:
-    """Collapse edges of slivers, the cheapest first; no triangle becomes a worse sliver."""
+) -> np.ndarray:
+    """The cheapest collapses of sides of slivers that do not touch each other."""
     sides = (3 * slivers[:, None] + np.arange(3)).reshape(-1)
     twins = mesh.twins[sides]
     half_edges = np.unique(np.concatenate([sides, twins[twins >= 0]]))
@@ -69,15 +65,11 @@ def _collapse(
     half_edges = half_edges[legal]
     costs = appraiser.collapse_costs(half_edges)
     half_edges = half_edges[np.argsort(costs, kind="stable")[: (costs <= most).sum()]]
-    half_edges = half_edges[independent_collapses(mesh, half_edges)]
-    return collapse_edges(mesh, half_edges) if len(half_edges) else mesh
+    return half_edges[independent_collapses(mesh, half_edges)]
 
 
-def _flip(mesh: Mesh, appraiser: Appraiser, slivers: np.ndarray, most: float) -> Mesh:
-    """Flip the longest edges of slivers where that raises the lower triangle of the pair."""
-    edges = raising_flips(mesh, slivers[np.argsort(mesh.heights[slivers], kind="stable")])
-    if not len(edges):
-        return mesh
+def _flips(mesh: Mesh, appraiser: Appraiser, slivers: np.ndarray, most: float) -> np.ndarray:
+    """Cheap flips of the longest sides of slivers that raise the lower triangle of the pair."""
+    edges = raising_flips(mesh, slivers)
     edges = edges[appraiser.flip_gains(edges) >= -most]
-    edges = edges[independent_flips(mesh, edges)]
-    return flip_edges(mesh, edges) if len(edges) else mesh
+    return edges[independent_flips(mesh, edges)]
