@@ -162,7 +162,7 @@ MUTANTS = (
         "pipeline/track/writer.py",
         "brings = shot != self._shot or not",
         "brings = not",
-        "tests/test_resume.py tests/test_track.py -k 'topology or joined'",
+        "tests/test_track.py -k brings_its_topology",
     ),
     Mutant(
         "threads outlive a closed device",

@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+import tracemalloc
 from pathlib import Path
 
 import pytest
@@ -131,8 +132,12 @@ def test_damage_is_the_same_every_time(folder: Path, tmp_path: Path) -> None:
 def test_arrays_are_no_larger_than_they_say() -> None:
     """A map that unpacks to more than its shape ends there; one without arrays is not unpacked."""
     layout = {"class": "Importance", "importance_map": map_of([4, 4], "<f8", bomb(64))}
+    tracemalloc.start()
     with pytest.raises(ValueError, match="importance_map"):
         from_plain(Importance, layout)
+    _, most = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert most < 1 << 20
     assert from_plain(Importance, layout, arrays=False).importance_map is None
 
 

@@ -26,7 +26,7 @@ from stages.media import FrameRange
 from stages.validate import assert_valid
 from tests import media_samples as samples
 from tests.bad_tracks import bomb
-from tests.tracks import COUNT, QUICK, QUICK_FLAGS, solve_to, write_clip
+from tests.tracks import COUNT, QUICK, QUICK_FLAGS, rows_of, solve_to, write_clip
 from warp_kernels.styles import STYLES
 
 
@@ -173,6 +173,16 @@ def test_info_tells_what_a_track_is(track: Path, clip: Path, capsys) -> None:
     assert facts["source"]["size"] == clip.stat().st_size
     assert facts["finished"]
     assert [row["frame"] for row in facts["frames"]] == list(range(COUNT))
+
+
+def test_every_shot_brings_its_topology(track: Path, tmp_path: Path) -> None:
+    """Even one that is equal to that of the shot before: parts of a track stand alone."""
+    with TrackReader(track) as reader:
+        header, snapshot = reader.header, reader.snapshot(0)
+    with TrackWriter(tmp_path / "t.mtrk", header) as writer:
+        for frame, shot in enumerate((0, 0, 2, 2)):
+            writer.write(replace(snapshot, frame_index=frame, pts=frame), shot)
+    assert [row[0] for row in rows_of(tmp_path / "t.mtrk")["topologies"]] == [0, 2]
 
 
 def test_a_stranger_commands_no_terminal(copy: Path, capsys) -> None:
