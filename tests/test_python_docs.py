@@ -17,7 +17,10 @@ def examples(page: str) -> list[str]:
 
 @pytest.mark.parametrize("page", PAGES)
 def test_examples_run(page: str, tmp_path: Path, monkeypatch, capsys) -> None:
-    """One after the other, in one program; what a comment says behind a print is printed."""
+    """One after the other, in one program; what a comment says behind a print is printed.
+
+    Takes seconds: they are what people try first, on clips as people have them.
+    """
     (tmp_path / "sample_videos").symlink_to(ROOT / "sample_videos")
     monkeypatch.chdir(tmp_path)
     blocks = examples(page)
