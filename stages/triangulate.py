@@ -18,6 +18,7 @@ from stages.snapshot import Snapshot
 from stages.spaces import SPACES
 from stages.topology import TOPOLOGIES, Goal
 from stages.topology.goal import SLIVER_HEIGHT
+from stages.unrest import Unrest
 from warp_kernels.color_model import CHANNELS, COLOR_MODELS, ColorModel
 from warp_kernels.device import Device
 from warp_kernels.errors import OptionError
@@ -41,6 +42,13 @@ CALM_QUALITY = 0.02
 """A later frame keeps its number of triangles while its rmse is this close to the wanted one."""
 MOST_DRIFT = 0.02
 """Most that the number of triangles changes from one frame to the next, as a part of it."""
+
+
+from stages.topology.growth import Growth
+import os
+RENEW_ROUNDS = int(os.environ.get("RR", "12"))
+RENEW_ITS = int(os.environ.get("RI", "3"))
+RENEW = Growth(start=1.0, peak=float(os.environ.get("RP", "2.0")), grown=0.2, settled=0.9)
 
 
 @dataclass(frozen=True)
@@ -173,7 +181,7 @@ class Triangulator:
         self._workspace.load_image(self._space.convert(frame.pixels), frame.weights)
         self._appraiser.forget()
 
-    def next(self, frame: Frame, seed: Carried) -> Snapshot:
+    def next(self, frame: Frame, seed: Carried, earlier: Snapshot | None = None) -> Snapshot:
         """Triangulate a frame that continues a shot.
 
         Args:
@@ -186,14 +194,40 @@ class Triangulator:
         each = iterations // (rounds + 1)
         convergence = Convergence(FRAME_SAVING, patience=1)
         spring = SPRING * self._rmse(seed.mesh) ** 2
-        mesh = self._follow(seed.mesh, seed, spring, each)
+        start = seed.mesh
+        unrest = None
+        if earlier is not None:
+            unrest = Unrest.between(earlier, seed.mesh, self._appraiser.energies(seed.mesh))
+            if unrest.triangles(seed.mesh).any():
+                seed = replace(seed, trust=seed.trust * (1.0 - unrest.values))
+                spring = SPRING * (2.0*earlier.energies.sum()/(CHANNELS * start.width * start.height))
+                start, unrest = self._renew(seed, spring, unrest)
+            else: unrest = None
+        mesh = self._follow(start, seed, spring, each)
         goal = self._goal(self._followed_count(mesh), calm=True)
         for _ in range(rounds):
             if each and convergence.is_reached(self._workspace.last_energy()):
                 break
+            if unrest is not None:
+                unrest = unrest.passed_on(mesh)
+                goal = replace(goal, unrest=unrest)
             mesh = self._approximator.topology.adapt(mesh, self._appraiser, goal)
             mesh = self._follow(mesh, seed, spring, each)
         return self._snapshot(frame, self._approximator.within_limits(mesh, goal))
+
+    def _renew(self, seed: Carried, spring: float, unrest: Unrest) -> Mesh:
+        mesh = seed.mesh
+        count = self._followed_count(mesh)
+        zone = int(unrest.triangles(mesh).sum())
+        for number in range(1, RENEW_ROUNDS + 1):
+            progress = number / RENEW_ROUNDS
+            extra = self._approximator.topology.growth.count(progress, 1000) / 1000 - 1
+            extra = RENEW.count(progress, 1000) / 1000 - 1
+            goal = self._goal(count + round(extra * zone))
+            mesh = self._approximator.topology.adapt(mesh, self._appraiser, replace(goal, unrest=unrest, confined=True))
+            unrest = unrest.passed_on(mesh)
+            mesh = self._follow(mesh, seed, spring, RENEW_ITS)
+        return mesh, unrest
 
     def fit(self, frame: Frame, mesh: Mesh) -> Snapshot:
         """Fit the colours alone, to a mesh that stays as it is.

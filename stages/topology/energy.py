@@ -71,12 +71,17 @@ class Energy:
         thin = CALM_SLIVER_HEIGHT if goal.calm else SLIVER_HEIGHT
         mesh = collapse_slivers(mesh, thin, most_rounds=SLIVER_ROUNDS)
         free = np.ones(mesh.triangle_count, dtype=bool)
+        if goal.confined:
+            free = goal.unrest.passed_on(mesh).triangles(mesh)
         flips = self._flips(mesh, appraiser, goal)
+        flips = flips[free[edge_triangles(mesh, flips)].all(axis=1)]
         flips = flips[independent_flips(mesh, flips)]
         if self._is_growing(mesh, goal) and len(flips):
             mesh, flips = flip_edges(mesh, flips), flips[:0]
+            if goal.confined:
+                free = goal.unrest.passed_on(mesh).triangles(mesh)
         free[edge_triangles(mesh, flips)] = False
-        splits, gains, points = self._splits(mesh, appraiser, goal)
+        splits, gains, points = self._splits(mesh, appraiser, goal, free)
         going = self._collapses(mesh, appraiser, goal, free, gains)
         lost = np.where(mesh.twins[going] >= 0, 2, 1).sum()
         some = _affordable(mesh, splits, free, int(goal.count - mesh.triangle_count + lost))
@@ -90,21 +95,32 @@ class Energy:
         if not goal.calm:
             return ranked_flips(mesh, appraiser, least_share=0.0, floor=0.0)
         floor = self.calm_flip_floor * appraiser.energies(mesh).mean()
-        return ranked_flips(mesh, appraiser, self.calm_flip, floor)
+        calm = None if goal.unrest is None else 1 - goal.unrest.at(mesh)
+        return ranked_flips(mesh, appraiser, self.calm_flip, floor, calm)
 
     def _splits(
-        self, mesh: Mesh, appraiser: Appraiser, goal: Goal
+        self, mesh: Mesh, appraiser: Appraiser, goal: Goal, free: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Edges worth splitting, what each saves per new triangle, and the places; best first."""
         missing = max(0, goal.count - mesh.triangle_count)
         most = (missing + 1) // 2 + self._relocations(mesh, goal)
-        edges, gains, points = ranked_splits(mesh, appraiser, most)
+        edges, gains, points = ranked_splits(mesh, appraiser, most, free)
         wanted = gains > LEAST_GAIN
         if goal.threshold is not None:
             floor = goal.threshold**2 * mesh.width * mesh.height
             bad = appraiser.energies(mesh) > floor
             wanted &= bad[edges // 3] | bad[np.maximum(mesh.twins[edges], 0) // 3]
-        return edges[wanted], gains[wanted], points[wanted]
+        edges, gains, points = edges[wanted], gains[wanted], points[wanted]
+        if goal.calm:
+            floor = self.calm_floor * appraiser.energies(mesh).mean()
+            if goal.unrest is not None:
+                calm = 1 - goal.unrest.at(mesh)
+                floor = floor * np.maximum(calm[edges // 3], calm[np.maximum(mesh.twins[edges], 0) // 3])
+            good = gains > floor
+            order = np.argsort(~good, kind="stable")
+            edges, gains, points, good = edges[order], gains[order], points[order], good[order]
+            self.__dict__["good"] = int(good.sum())
+        return edges, gains, points
 
     def _collapses(
         self, mesh: Mesh, appraiser: Appraiser, goal: Goal, free: np.ndarray, gains: np.ndarray
@@ -125,7 +141,7 @@ class Energy:
         most = excess + self._relocations(mesh, goal)
         if most == 0:
             return np.empty(0, dtype=np.int64)
-        going, costs = ranked_collapses(mesh, appraiser, most)
+        going, costs = ranked_collapses(mesh, appraiser, most, free)
         apart = _away_from(mesh, going, free)
         going, costs = going[apart], costs[apart]
         apart = independent_collapses(mesh, going)
@@ -133,10 +149,11 @@ class Energy:
         # a vertex away pays for one split of an inner edge: two triangles
         pairs = max(0, min(len(going), most) - excess)
         pairs = min(pairs, len(gains))
-        profit, floor = self.profit, 0.0
+        profit = self.profit
         if goal.calm:
-            profit, floor = self.calm_profit, self.calm_floor * appraiser.energies(mesh).mean()
-        worth = np.maximum(profit * costs[excess : excess + pairs], floor)
+            profit = self.calm_profit
+            pairs = min(pairs, self.__dict__["good"])
+        worth = profit * costs[excess : excess + pairs]
         elsewhere = gains[:pairs] > worth
         going = going[: excess + int(elsewhere.sum())]
         _, corners = stars(mesh, mesh.triangles.reshape(-1)[going])

@@ -17,7 +17,7 @@ LEAST_EXAMINED = 100
 """Splits measured at least: where few are wanted all of eight may touch other changes."""
 
 
-def ranked_flips(mesh: Mesh, appraiser: Appraiser, least_share: float, floor: float) -> np.ndarray:
+def ranked_flips(mesh: Mesh, appraiser: Appraiser, least_share: float, floor: float, calm=None) -> np.ndarray:
     """Edges of the measured mesh whose flip pays.
 
     Args:
@@ -30,13 +30,16 @@ def ranked_flips(mesh: Mesh, appraiser: Appraiser, least_share: float, floor: fl
     edges = mesh.edge_half_edges
     gains = appraiser.flip_gains(edges)
     before = energies[edges // 3] + energies[np.maximum(mesh.twins[edges], 0) // 3]
-    wanted = gains > np.maximum(least_share * before, max(floor, LEAST_GAIN))
+    least = np.maximum(least_share * before, floor)
+    if calm is not None:
+        least *= np.maximum(calm[edges // 3], calm[np.maximum(mesh.twins[edges], 0) // 3])
+    wanted = gains > np.maximum(least, LEAST_GAIN)
     edges, gains = edges[wanted], gains[wanted]
     return edges[np.argsort(-gains, kind="stable")]
 
 
 def ranked_splits(
-    mesh: Mesh, appraiser: Appraiser, most: int
+    mesh: Mesh, appraiser: Appraiser, most: int, free: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Edges of the measured mesh, what a split of each saves per new triangle, and its place.
 
@@ -53,6 +56,8 @@ def ranked_splits(
     energies = appraiser.energies(mesh)
     edges = mesh.edge_half_edges
     twins = mesh.twins[edges]
+    inside = free[edges // 3] & (free[twins // 3] | (twins < 0))
+    edges, twins = edges[inside], twins[inside]
     added = np.where(twins >= 0, 2, 1)
     beside = energies[edges // 3] + np.where(twins >= 0, energies[twins // 3], 0.0)
     examined = max(EXAMINED * most, LEAST_EXAMINED)
@@ -64,7 +69,7 @@ def ranked_splits(
     return edges[order], gains[order], points[order]
 
 
-def ranked_collapses(mesh: Mesh, appraiser: Appraiser, most: int) -> tuple[np.ndarray, np.ndarray]:
+def ranked_collapses(mesh: Mesh, appraiser: Appraiser, most: int, free: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Half-edges of the measured mesh and what each collapse costs per lost triangle, best first.
 
     If all triangles around a vertex took one colour, the energy would grow by the spread of their
@@ -77,7 +82,9 @@ def ranked_collapses(mesh: Mesh, appraiser: Appraiser, most: int) -> tuple[np.nd
         most: Number of vertices that may go.
     """
     spread = np.where(mesh.on_left_right & mesh.on_top_bottom, np.inf, _spread(mesh, appraiser))
+    spread[mesh.triangles[~free]] = np.inf
     likely = np.argsort(spread, kind="stable")[: EXAMINED * most]
+    likely = likely[np.isfinite(spread[likely])]
     chosen = np.zeros(mesh.vertex_count, dtype=bool)
     chosen[likely] = True
     origins = mesh.triangles.reshape(-1)
