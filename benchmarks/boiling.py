@@ -58,12 +58,15 @@ Half = Callable[[int, np.random.Generator], list[np.ndarray]]
 def photograph(count: int, *, pan: np.ndarray, right: bool = False) -> list[np.ndarray]:
     """Pictures of the portrait, one of its halves, which moves by so much a frame [px]."""
     whole = cv2.imread(str(DEFAULT_PICTURE))[..., ::-1]
-    middle = np.array([0.62 if right else 0.38, 0.45]) * whole.shape[1::-1]
-    size = (WIDTH, HEIGHT)
-    return [
-        cv2.getRectSubPix(np.ascontiguousarray(whole), size, tuple(middle + pan * (i - count / 2)))
-        for i in range(count)
-    ]
+    # what is as fine as a pixel would look different at every fraction of one
+    whole = cv2.GaussianBlur(whole, (0, 0), 0.8)
+    corner = np.array([0.3 if right else 0.1, 0.1]) * whole.shape[1::-1]
+    found = []
+    for number in range(count):
+        x, y = corner + pan * number
+        shift = np.array([[1.0, 0.0, -x], [0.0, 1.0, -y]])
+        found.append(cv2.warpAffine(whole, shift, (WIDTH, HEIGHT), flags=cv2.INTER_CUBIC))
+    return found
 
 
 def foam(count: int, rng: np.random.Generator) -> list[np.ndarray]:

@@ -80,9 +80,11 @@ class Energy:
             mesh, flips = flip_edges(mesh, flips), flips[:0]
             if goal.confined:
                 free = goal.unrest.passed_on(mesh).triangles(mesh)
+        near = free.copy()
+        if goal.confined and not self._is_growing(mesh, goal): free[:] = True
         free[edge_triangles(mesh, flips)] = False
-        splits, gains, points = self._splits(mesh, appraiser, goal, free)
-        going = self._collapses(mesh, appraiser, goal, free, gains)
+        splits, gains, points = self._splits(mesh, appraiser, goal, near & free)
+        going = self._collapses(mesh, appraiser, goal, free, gains, near)
         lost = np.where(mesh.twins[going] >= 0, 2, 1).sum()
         some = _affordable(mesh, splits, free, int(goal.count - mesh.triangle_count + lost))
         # edits that do not touch each other leave each other's half-edges where they are
@@ -123,7 +125,7 @@ class Energy:
         return edges, gains, points
 
     def _collapses(
-        self, mesh: Mesh, appraiser: Appraiser, goal: Goal, free: np.ndarray, gains: np.ndarray
+        self, mesh: Mesh, appraiser: Appraiser, goal: Goal, free: np.ndarray, gains: np.ndarray, near
     ) -> np.ndarray:
         """Choose the vertices that are missed least, by half-edges out of them.
 
@@ -141,7 +143,7 @@ class Energy:
         most = excess + self._relocations(mesh, goal)
         if most == 0:
             return np.empty(0, dtype=np.int64)
-        going, costs = ranked_collapses(mesh, appraiser, most, free)
+        going, costs = ranked_collapses(mesh, appraiser, most, near)
         apart = _away_from(mesh, going, free)
         going, costs = going[apart], costs[apart]
         apart = independent_collapses(mesh, going)

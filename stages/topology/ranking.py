@@ -82,15 +82,20 @@ def ranked_collapses(mesh: Mesh, appraiser: Appraiser, most: int, free: np.ndarr
         most: Number of vertices that may go.
     """
     spread = np.where(mesh.on_left_right & mesh.on_top_bottom, np.inf, _spread(mesh, appraiser))
-    spread[mesh.triangles[~free]] = np.inf
+    outside = np.zeros(mesh.vertex_count, dtype=bool)
+    outside[mesh.triangles[~free]] = True
+    import os
+    P = float(os.environ.get("PP", "1e30"))
+    spread = np.where(outside, P * spread, spread)
     likely = np.argsort(spread, kind="stable")[: EXAMINED * most]
-    likely = likely[np.isfinite(spread[likely])]
+    likely = likely[spread[likely] < 1e29]
     chosen = np.zeros(mesh.vertex_count, dtype=bool)
     chosen[likely] = True
     origins = mesh.triangles.reshape(-1)
     half_edges = np.flatnonzero(chosen[origins])
     half_edges = half_edges[keeps_border(mesh, half_edges, origins[half_edges])]
     costs = appraiser.collapse_costs(half_edges)
+    costs = np.where(outside[origins[half_edges]], P * costs, costs)
     half_edges, costs = half_edges[costs < BARRED], costs[costs < BARRED]
     costs /= np.where(mesh.twins[half_edges] >= 0, 2, 1)
     order = np.argsort(costs, kind="stable")[: EXAMINED * most]
