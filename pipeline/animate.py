@@ -222,7 +222,8 @@ def _solve(
         elif step.passage.is_still and job.weights is None:
             snapshot = snapshot.again(step.frame)
         else:
-            snapshot = triangulator.next(step.frame, advect(snapshot.mesh, step.passage), snapshot)
+            carried = advect(snapshot.mesh, step.passage)
+            snapshot = triangulator.next(step.frame, carried, snapshot)
         yield Solved(snapshot, step.shot, step.frame.pixels if job.needs_source else None)
 
 

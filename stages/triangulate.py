@@ -18,6 +18,7 @@ from stages.snapshot import Snapshot
 from stages.spaces import SPACES
 from stages.topology import TOPOLOGIES, Goal
 from stages.topology.goal import SLIVER_HEIGHT
+from stages.topology.growth import Growth
 from stages.unrest import Unrest
 from warp_kernels.color_model import CHANNELS, COLOR_MODELS, ColorModel
 from warp_kernels.device import Device
@@ -38,17 +39,14 @@ FRAME_ROUND = 3
 FRAME_SAVING = 0.0025
 """Once a round saves less than this part of the energy, a later frame is done: where little has
 changed one or two rounds are enough, where something moves fast all of them are worth it."""
+RENEWAL = Growth(start=1.0, peak=2.0, grown=0.2, settled=0.9)
+"""Where a later frame boils it is refined as first frames are, over a share of its rounds."""
+RENEWED = 0.8
+"""That share."""
 CALM_QUALITY = 0.02
 """A later frame keeps its number of triangles while its rmse is this close to the wanted one."""
 MOST_DRIFT = 0.02
 """Most that the number of triangles changes from one frame to the next, as a part of it."""
-
-
-from stages.topology.growth import Growth
-import os
-RENEW_ROUNDS = int(os.environ.get("RR", "12"))
-RENEW_ITS = int(os.environ.get("RI", "3"))
-RENEW = Growth(start=1.0, peak=float(os.environ.get("RP", "2.0")), grown=0.2, settled=0.9)
 
 
 @dataclass(frozen=True)
@@ -187,6 +185,8 @@ class Triangulator:
         Args:
             frame: The frame.
             seed: The previous frame's mesh, carried along by the motion.
+            earlier: The previous frame, by which it is told where the picture boils; None if it
+                does not.
         """
         self._load(frame)
         iterations = self.options.frame_iterations
@@ -194,40 +194,24 @@ class Triangulator:
         each = iterations // (rounds + 1)
         convergence = Convergence(FRAME_SAVING, patience=1)
         spring = SPRING * self._rmse(seed.mesh) ** 2
-        start = seed.mesh
-        unrest = None
-        if earlier is not None:
-            unrest = Unrest.between(earlier, seed.mesh, self._appraiser.energies(seed.mesh))
-            if unrest.triangles(seed.mesh).any():
-                seed = replace(seed, trust=seed.trust * (1.0 - unrest.values))
-                spring = SPRING * (2.0*earlier.energies.sum()/(CHANNELS * start.width * start.height))
-                start, unrest = self._renew(seed, spring, unrest)
-            else: unrest = None
-        mesh = self._follow(start, seed, spring, each)
-        goal = self._goal(self._followed_count(mesh), calm=True)
-        for _ in range(rounds):
+        unrest = self._unrest(frame, seed, earlier)
+        if unrest is not None:
+            seed = replace(seed, trust=seed.trust * (1.0 - unrest.values))
+        mesh = self._follow(seed.mesh, seed, spring, each)
+        renewed = 0 if unrest is None else int(RENEWED * rounds)
+        growing = 0 if unrest is None else int(unrest.boiling(mesh).sum())
+        for number in range(1, renewed + 1):
+            more = RENEWAL.count(number / renewed, growing) - growing
+            goal = self._goal(seed.mesh.triangle_count + more, calm=True, unrest=unrest)
+            mesh = self._approximator.topology.adapt(mesh, self._appraiser, goal)
+            mesh = self._follow(mesh, seed, spring, each)
+        goal = self._goal(self._followed_count(mesh), calm=True, unrest=unrest)
+        for _ in range(rounds - renewed):
             if each and convergence.is_reached(self._workspace.last_energy()):
                 break
-            if unrest is not None:
-                unrest = unrest.passed_on(mesh)
-                goal = replace(goal, unrest=unrest)
             mesh = self._approximator.topology.adapt(mesh, self._appraiser, goal)
             mesh = self._follow(mesh, seed, spring, each)
         return self._snapshot(frame, self._approximator.within_limits(mesh, goal))
-
-    def _renew(self, seed: Carried, spring: float, unrest: Unrest) -> Mesh:
-        mesh = seed.mesh
-        count = self._followed_count(mesh)
-        zone = int(unrest.triangles(mesh).sum())
-        for number in range(1, RENEW_ROUNDS + 1):
-            progress = number / RENEW_ROUNDS
-            extra = self._approximator.topology.growth.count(progress, 1000) / 1000 - 1
-            extra = RENEW.count(progress, 1000) / 1000 - 1
-            goal = self._goal(count + round(extra * zone))
-            mesh = self._approximator.topology.adapt(mesh, self._appraiser, replace(goal, unrest=unrest, confined=True))
-            unrest = unrest.passed_on(mesh)
-            mesh = self._follow(mesh, seed, spring, RENEW_ITS)
-        return mesh, unrest
 
     def fit(self, frame: Frame, mesh: Mesh) -> Snapshot:
         """Fit the colours alone, to a mesh that stays as it is.
@@ -240,6 +224,16 @@ class Triangulator:
             self._load(frame)
             load_mesh(self._workspace, mesh)
         return self._snapshot(frame, mesh)
+
+    def _unrest(self, frame: Frame, seed: Carried, earlier: Snapshot | None) -> Unrest | None:
+        """Where the picture boils, if anywhere; told by the colours that snapshots have."""
+        if earlier is None:
+            return None
+        if self._fitting is self._workspace:
+            return Unrest.between(earlier, seed, self._appraiser.energies(seed.mesh))
+        self._fitting.load_image(frame.pixels, frame.weights)
+        load_mesh(self._fitting, seed.mesh)
+        return Unrest.between(earlier, seed, self._fitting.fit()[1])
 
     def _followed_count(self, mesh: Mesh) -> int:
         """How many triangles a later frame shall have; a quality lets their number drift."""
@@ -289,10 +283,10 @@ class Triangulator:
         samples = CHANNELS * mesh.width * mesh.height
         return float(np.sqrt(2.0 * self._appraiser.energies(mesh).sum() / samples))
 
-    def _goal(self, count: int, *, calm: bool = False) -> Goal:
+    def _goal(self, count: int, *, calm: bool = False, unrest: Unrest | None = None) -> Goal:
         """What the mesh must be like, with a number of triangles."""
         refine = self.options.refine
-        return Goal(count, refine.error, calm, refine.largest_area)
+        return Goal(count, refine.error, calm, refine.largest_area, unrest)
 
     def _snapshot(self, frame: Frame, mesh: Mesh) -> Snapshot:
         """Fit the colours to the mesh that lies in the workspace, just optimised."""

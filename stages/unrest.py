@@ -1,56 +1,136 @@
-"""Where a picture changes without a motion, so that following its mesh does not pay."""
+"""Where a picture boils: it changes without a motion, so that following its mesh does not pay."""
 
 from dataclasses import dataclass
-import os
 
 import numpy as np
 
+from stages.advect import Carried
 from stages.mesh import Mesh
 from stages.snapshot import Snapshot
 
-LO = float(os.environ.get("ULO", "1.2"))
-HI = float(os.environ.get("UHI", "1.6"))
-RINGS = int(os.environ.get("URINGS", "3"))
+WORSE = 1.2, 1.6
+"""Triangles that came along and now lack less than the first number times what they lacked are
+well followed; beyond the second one they fit no better than others would."""
+STRANGE = 0.2, 0.4
+"""The same for the misfit of patches beside their contrast: two patches that have nothing to do
+with each other differ by about 1, and of something that moves fast, or under grain, 0.1 to 0.3."""
+RINGS = 4
+"""Both are told by the triangles that can be reached over so many edges: a single one may fit
+badly wherever something moves."""
+FAINT_ENERGY = 0.1
+"""What lacks less than this part of a triangle's mean energy is not worth any trouble."""
+FAINT_CONTRAST = 2.0
+"""Contrast below this is noise [code values]."""
+LEAST_SHARE = 0.02
+"""Less than this part of the triangles is left as it is: a few limbs, or what was uncovered."""
 
 
 @dataclass(frozen=True, eq=False)
 class Unrest:
+    """How much the picture boils around the vertices of a mesh."""
+
     vertex_ids: np.ndarray
+    """Their persistent numbers, ascending, shape [V]."""
     values: np.ndarray
+    """From 0, where it is calm or moves, to 1, where it boils; shape [V]."""
 
     @classmethod
-    def between(cls, earlier: Snapshot, carried: Mesh, energies: np.ndarray) -> "Unrest":
-        ids = earlier.mesh.triangle_ids
-        order = np.argsort(ids)
-        before = earlier.energies[order][np.searchsorted(ids[order], carried.triangle_ids)]
-        eps = 0.1 * before.mean()
-        corners = carried.triangles.reshape(-1)
+    def between(cls, earlier: Snapshot, carried: Carried, energies: np.ndarray) -> "Unrest | None":
+        """Compare how triangles fit with how they did in the frame before.
 
-        def around(x):
-            for _ in range(RINGS - 1):
-                x = np.bincount(corners, np.repeat(x, 3), carried.vertex_count)[carried.triangles].sum(axis=1) / 3
-            return np.bincount(corners, np.repeat(x, 3), carried.vertex_count)
+        A picture under grain looks unlike the one before as well, but its triangles fit as they
+        did; those of something that moves too fast fit worse, but their patches are found.
 
-        ratio = around(energies + eps) / around(before + eps)
-        return cls(carried.vertex_ids, np.clip((ratio - LO) / (HI - LO), 0.0, 1.0))
+        Args:
+            earlier: The frame before.
+            carried: Its mesh as it came along.
+            energies: E(T) there, measured as those of `earlier` [code value^2 px], shape [T].
 
-    def passed_on(self, mesh: Mesh) -> "Unrest":
-        at = np.searchsorted(self.vertex_ids, mesh.vertex_ids)
-        at = np.minimum(at, len(self.vertex_ids) - 1)
-        known = self.vertex_ids[at] == mesh.vertex_ids
-        values = np.where(known, self.values[at], 0.0)
-        tails, heads = mesh.edge_vertices.T
-        ends = np.concatenate([tails, heads]), np.concatenate([heads, tails])
-        told = known[ends[1]]
-        total = np.bincount(ends[0][told], values[ends[1][told]], mesh.vertex_count)
-        count = np.bincount(ends[0][told], minlength=mesh.vertex_count)
-        values[~known] = (total / np.maximum(count, 1))[~known]
-        return Unrest(mesh.vertex_ids, values)
-
-    def triangles(self, mesh: Mesh) -> np.ndarray:
-        at = np.searchsorted(self.vertex_ids, mesh.vertex_ids)
-        return (self.values[at][mesh.triangles] >= 0.5).all(axis=1)
+        Returns:
+            None where next to nothing boils, or where nothing is known of the patches.
+        """
+        if carried.patches is None:
+            return None
+        mesh = carried.mesh
+        before = _kept(earlier, mesh)
+        faint = FAINT_ENERGY * before.mean()
+        if not faint > 0:
+            return None
+        worse = _around(mesh, energies + faint) / _around(mesh, before + faint)
+        misfits, contrasts = carried.patches.astype(np.float64).T
+        strange = _around(mesh, misfits[mesh.triangles].sum(axis=1))
+        strange /= _around(mesh, (contrasts + FAINT_CONTRAST)[mesh.triangles].sum(axis=1))
+        values = _ramp(worse, *WORSE) * _ramp(strange, *STRANGE)
+        found = cls(mesh.vertex_ids, values)
+        return found if found.boiling(mesh).mean() >= LEAST_SHARE else None
 
     def at(self, mesh: Mesh) -> np.ndarray:
-        """[T]"""
-        return self.passed_on(mesh).values[mesh.triangles].min(axis=1)
+        """How much it boils around the vertices of what has become of the mesh, shape [V].
+
+        New ones are like those around them.
+
+        Args:
+            mesh: The mesh after any edits.
+        """
+        places = np.searchsorted(self.vertex_ids, mesh.vertex_ids)
+        places = np.minimum(places, len(self.vertex_ids) - 1)
+        told = self.vertex_ids[places] == mesh.vertex_ids
+        values = np.where(told, self.values[places], 0.0)
+        tails, heads = mesh.edge_vertices.T
+        ends = np.concatenate([tails, heads]), np.concatenate([heads, tails])
+        while not told.all():
+            asks = ~told[ends[0]] & told[ends[1]]
+            asking, told_by = ends[0][asks], ends[1][asks]
+            if not len(asking):
+                break  # nothing is left of the mesh
+            counts = np.bincount(asking, minlength=mesh.vertex_count)
+            sums = np.bincount(asking, values[told_by], mesh.vertex_count)
+            values = np.where(counts > 0, sums / np.maximum(counts, 1), values)
+            told |= counts > 0
+        return values
+
+    def calm(self, mesh: Mesh) -> np.ndarray:
+        """How calm it is at the calmest corner of each triangle [0..1], shape [T].
+
+        Args:
+            mesh: The mesh after any edits.
+        """
+        return 1.0 - self.at(mesh)[mesh.triangles].min(axis=1)
+
+    def boiling(self, mesh: Mesh) -> np.ndarray:
+        """Triangles that rather boil than not, shape [T] bool.
+
+        Args:
+            mesh: The mesh after any edits.
+        """
+        return self.calm(mesh) <= 0.5
+
+
+def _kept(earlier: Snapshot, mesh: Mesh) -> np.ndarray:
+    """Energies that the triangles of a carried mesh had in the frame before, shape [T]."""
+    ids = earlier.mesh.triangle_ids
+    order = np.argsort(ids, kind="stable")
+    return earlier.energies[order[np.searchsorted(ids[order], mesh.triangle_ids)]]
+
+
+def _around(mesh: Mesh, values: np.ndarray) -> np.ndarray:
+    """Sums over the triangles around each vertex, those close by counted more often.
+
+    Args:
+        mesh: A mesh.
+        values: One for each triangle, shape [T].
+
+    Returns:
+        Shape [V].
+    """
+    corners = mesh.triangles.reshape(-1)
+    sums = np.bincount(corners, np.repeat(values, 3), mesh.vertex_count)
+    for _ in range(RINGS - 1):
+        spread = np.repeat(sums[mesh.triangles].sum(axis=1), 3)
+        sums = np.bincount(corners, spread, mesh.vertex_count)
+    return sums
+
+
+def _ramp(values: np.ndarray, begin: float, end: float) -> np.ndarray:
+    """0 up to one value and 1 from another one on."""
+    return np.clip((values - begin) / (end - begin), 0.0, 1.0)

@@ -18,7 +18,13 @@ from stages.edits.neighbourhood import edge_triangles, stars
 from stages.mesh import Mesh
 from stages.topology.goal import SLIVER_HEIGHT, Goal
 from stages.topology.growth import Growth
-from stages.topology.ranking import LEAST_GAIN, ranked_collapses, ranked_flips, ranked_splits
+from stages.topology.ranking import (
+    LEAST_GAIN,
+    beside_edges,
+    ranked_collapses,
+    ranked_flips,
+    ranked_splits,
+)
 
 TWICE = Growth(start=1.0, peak=2.0, grown=0.2, settled=0.9)
 """Twice the triangles at first: what is then taken away, one vertex at a time, are those that
@@ -71,20 +77,16 @@ class Energy:
         thin = CALM_SLIVER_HEIGHT if goal.calm else SLIVER_HEIGHT
         mesh = collapse_slivers(mesh, thin, most_rounds=SLIVER_ROUNDS)
         free = np.ones(mesh.triangle_count, dtype=bool)
-        if goal.confined:
-            free = goal.unrest.passed_on(mesh).triangles(mesh)
         flips = self._flips(mesh, appraiser, goal)
-        flips = flips[free[edge_triangles(mesh, flips)].all(axis=1)]
         flips = flips[independent_flips(mesh, flips)]
         if self._is_growing(mesh, goal) and len(flips):
             mesh, flips = flip_edges(mesh, flips), flips[:0]
-            if goal.confined:
-                free = goal.unrest.passed_on(mesh).triangles(mesh)
-        near = free.copy()
-        if goal.confined and not self._is_growing(mesh, goal): free[:] = True
         free[edge_triangles(mesh, flips)] = False
-        splits, gains, points = self._splits(mesh, appraiser, goal, near & free)
-        going = self._collapses(mesh, appraiser, goal, free, gains, near)
+        splits, gains, points = self._splits(mesh, appraiser, goal)
+        floors = self._floors(mesh, appraiser, goal, splits)
+        above = np.argsort(gains <= floors, kind="stable")  # where it boils, floors are lower
+        splits, gains, points, floors = splits[above], gains[above], points[above], floors[above]
+        going = self._collapses(mesh, appraiser, goal, free, gains, floors)
         lost = np.where(mesh.twins[going] >= 0, 2, 1).sum()
         some = _affordable(mesh, splits, free, int(goal.count - mesh.triangle_count + lost))
         # edits that do not touch each other leave each other's half-edges where they are
@@ -97,35 +99,51 @@ class Energy:
         if not goal.calm:
             return ranked_flips(mesh, appraiser, least_share=0.0, floor=0.0)
         floor = self.calm_flip_floor * appraiser.energies(mesh).mean()
-        calm = None if goal.unrest is None else 1 - goal.unrest.at(mesh)
+        calm = None if goal.unrest is None else goal.unrest.calm(mesh)
         return ranked_flips(mesh, appraiser, self.calm_flip, floor, calm)
 
     def _splits(
-        self, mesh: Mesh, appraiser: Appraiser, goal: Goal, free: np.ndarray
+        self, mesh: Mesh, appraiser: Appraiser, goal: Goal
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Edges worth splitting, what each saves per new triangle, and the places; best first."""
         missing = max(0, goal.count - mesh.triangle_count)
         most = (missing + 1) // 2 + self._relocations(mesh, goal)
-        edges, gains, points = ranked_splits(mesh, appraiser, most, free)
+        within = None
+        if goal.unrest is not None and self._is_growing(mesh, goal):
+            within = goal.unrest.boiling(mesh)
+        edges, gains, points = ranked_splits(mesh, appraiser, most, within)
         wanted = gains > LEAST_GAIN
         if goal.threshold is not None:
             floor = goal.threshold**2 * mesh.width * mesh.height
             bad = appraiser.energies(mesh) > floor
             wanted &= bad[edges // 3] | bad[np.maximum(mesh.twins[edges], 0) // 3]
-        edges, gains, points = edges[wanted], gains[wanted], points[wanted]
-        if goal.calm:
-            floor = self.calm_floor * appraiser.energies(mesh).mean()
-            if goal.unrest is not None:
-                calm = 1 - goal.unrest.at(mesh)
-                floor = floor * np.maximum(calm[edges // 3], calm[np.maximum(mesh.twins[edges], 0) // 3])
-            good = gains > floor
-            order = np.argsort(~good, kind="stable")
-            edges, gains, points, good = edges[order], gains[order], points[order], good[order]
-            self.__dict__["good"] = int(good.sum())
-        return edges, gains, points
+        return edges[wanted], gains[wanted], points[wanted]
+
+    def _floors(
+        self, mesh: Mesh, appraiser: Appraiser, goal: Goal, edges: np.ndarray
+    ) -> np.ndarray:
+        """What splits of edges must save for a vertex to come from elsewhere, shape [N]."""
+        if not goal.calm:
+            return np.zeros(len(edges))
+        floor = self.calm_floor * appraiser.energies(mesh).mean()
+        if goal.unrest is None:
+            return np.full(len(edges), floor)
+        return floor * beside_edges(mesh, goal.unrest.calm(mesh), edges)
+
+    def _worth(self, mesh: Mesh, goal: Goal) -> np.ndarray | None:
+        """By how much vertices are held on to beside those that are calm, shape [V]."""
+        if goal.unrest is None:
+            return None
+        return 1.0 - (1.0 - self.profit / self.calm_profit) * goal.unrest.at(mesh)
 
     def _collapses(
-        self, mesh: Mesh, appraiser: Appraiser, goal: Goal, free: np.ndarray, gains: np.ndarray, near
+        self,
+        mesh: Mesh,
+        appraiser: Appraiser,
+        goal: Goal,
+        free: np.ndarray,
+        gains: np.ndarray,
+        floors: np.ndarray,
     ) -> np.ndarray:
         """Choose the vertices that are missed least, by half-edges out of them.
 
@@ -138,12 +156,13 @@ class Energy:
             goal: What to reach.
             free: Triangles that no change has claimed yet, [T] bool; updated.
             gains: What splits save per triangle, best first.
+            floors: What each must save for a vertex to come from elsewhere.
         """
         excess = max(0, (mesh.triangle_count - goal.count + 1) // 2)
         most = excess + self._relocations(mesh, goal)
         if most == 0:
             return np.empty(0, dtype=np.int64)
-        going, costs = ranked_collapses(mesh, appraiser, most, near)
+        going, costs = ranked_collapses(mesh, appraiser, most, self._worth(mesh, goal))
         apart = _away_from(mesh, going, free)
         going, costs = going[apart], costs[apart]
         apart = independent_collapses(mesh, going)
@@ -151,11 +170,10 @@ class Energy:
         # a vertex away pays for one split of an inner edge: two triangles
         pairs = max(0, min(len(going), most) - excess)
         pairs = min(pairs, len(gains))
-        profit = self.profit
+        profit, floor = self.profit, np.zeros(pairs)
         if goal.calm:
-            profit = self.calm_profit
-            pairs = min(pairs, self.__dict__["good"])
-        worth = profit * costs[excess : excess + pairs]
+            profit, floor = self.calm_profit, floors[:pairs]
+        worth = np.maximum(profit * costs[excess : excess + pairs], floor)
         elsewhere = gains[:pairs] > worth
         going = going[: excess + int(elsewhere.sum())]
         _, corners = stars(mesh, mesh.triangles.reshape(-1)[going])
@@ -170,7 +188,11 @@ class Energy:
         """Most vertices that may move elsewhere."""
         if self._is_growing(mesh, goal):
             return 0
-        return int((self.calm_relocated if goal.calm else self.relocated) * goal.count)
+        if not goal.calm:
+            return int(self.relocated * goal.count)
+        more = self.relocated - self.calm_relocated
+        boiling = 0 if goal.unrest is None else int(goal.unrest.boiling(mesh).sum())
+        return int(self.calm_relocated * goal.count + more * boiling)
 
 
 def _away_from(mesh: Mesh, half_edges: np.ndarray, free: np.ndarray) -> np.ndarray:

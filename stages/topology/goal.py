@@ -18,10 +18,8 @@ class Goal:
     """Whether a picture is being followed: only what clearly pays may change."""
     largest_area: float = inf
     """No triangle may become larger [px^2]."""
-    unrest: "Unrest | None" = None
-    """Where a followed picture boils; None for nowhere."""
-    confined: bool = False
-    """Whether nothing may change elsewhere."""
+    unrest: Unrest | None = None
+    """Where a followed picture boils, so that more may change there; None for nowhere."""
 
     def tightened(self, count: int, spare: float) -> "Goal":
         """The same goal with another count, and a part of the area to spare."""
