@@ -11,7 +11,7 @@ from stages.snapshot import Snapshot
 WORSE = 1.2, 1.6
 """Triangles that came along and now lack less than the first number times what they lacked are
 well followed; beyond the second one they fit no better than others would."""
-STRANGE = 0.2, 0.4
+STRANGE = 0.15, 0.35
 """The same for the misfit of patches beside their contrast: two patches that have nothing to do
 with each other differ by about 1, and of something that moves fast, or under grain, 0.1 to 0.3."""
 RINGS = 4

@@ -59,6 +59,9 @@ class Energy:
     """As `relocated`, in a followed picture."""
     calm_profit: float = 2.0
     """As `profit`, in a followed picture."""
+    calm_hold: float = 1.2
+    """In a followed picture that boils in places, a vertex where it is calm goes only if one where
+    it boils would cost this many times as much."""
     growth: Growth = TWICE
     """How the number of triangles develops in a first frame."""
 
@@ -131,10 +134,10 @@ class Energy:
         return floor * beside_edges(mesh, goal.unrest.calm(mesh), edges)
 
     def _worth(self, mesh: Mesh, goal: Goal) -> np.ndarray | None:
-        """By how much vertices are held on to beside those that are calm, shape [V]."""
+        """How firmly vertices are held on to, beside those where it is calm, shape [V]."""
         if goal.unrest is None:
             return None
-        return 1.0 - (1.0 - self.profit / self.calm_profit) * goal.unrest.at(mesh)
+        return 1.0 - (1.0 - 1.0 / self.calm_hold) * goal.unrest.at(mesh)
 
     def _collapses(
         self,
