@@ -39,7 +39,7 @@ FRAME_ROUND = 3
 FRAME_SAVING = 0.0025
 """Once a round saves less than this part of the energy, a later frame is done: where little has
 changed one or two rounds are enough, where something moves fast all of them are worth it."""
-RENEWAL = Growth(start=1.0, peak=2.0, grown=0.2, settled=0.9)
+RENEWAL = Growth(start=1.0, peak=2.5, grown=0.2, settled=0.9)
 """Where a later frame boils it is refined as first frames are, over a share of its rounds."""
 RENEWED = 0.8
 """That share."""
@@ -198,20 +198,40 @@ class Triangulator:
         if unrest is not None:
             seed = replace(seed, trust=seed.trust * (1.0 - unrest.values))
         mesh = self._follow(seed.mesh, seed, spring, each)
-        renewed = 0 if unrest is None else int(RENEWED * rounds)
-        growing = 0 if unrest is None else int(unrest.boiling(mesh).sum())
-        for number in range(1, renewed + 1):
-            more = RENEWAL.count(number / renewed, growing) - growing
-            goal = self._goal(seed.mesh.triangle_count + more, calm=True, unrest=unrest)
-            mesh = self._approximator.topology.adapt(mesh, self._appraiser, goal)
-            mesh = self._follow(mesh, seed, spring, each)
+        if unrest is not None:
+            renewing = int(RENEWED * rounds)
+            mesh = self._renew(mesh, seed, unrest, spring, renewing, each)
+            rounds -= renewing
         goal = self._goal(self._followed_count(mesh), calm=True, unrest=unrest)
-        for _ in range(rounds - renewed):
+        for _ in range(rounds):
             if each and convergence.is_reached(self._workspace.last_energy()):
                 break
             mesh = self._approximator.topology.adapt(mesh, self._appraiser, goal)
             mesh = self._follow(mesh, seed, spring, each)
         return self._snapshot(frame, self._approximator.within_limits(mesh, goal))
+
+    def _renew(
+        self, mesh: Mesh, seed: Carried, unrest: Unrest, spring: float, rounds: int, each: int
+    ) -> Mesh:
+        """Refine a mesh anew where it boils, and adapt it elsewhere as always.
+
+        Args:
+            mesh: What has become of the seed.
+            seed: Where the motion took the vertices.
+            unrest: Where it boils.
+            spring: As in `_follow` [code value^2].
+            rounds: Looks at the topology.
+            each: Iterations after each of them.
+        """
+        refine = self.options.refine
+        count = refine.triangles if refine.quality is None else mesh.triangle_count
+        boiling = int(unrest.boiling(mesh).sum())
+        for number in range(1, rounds + 1):
+            more = RENEWAL.count(number / rounds, boiling) - boiling
+            goal = self._goal(count + more, calm=True, unrest=unrest)
+            mesh = self._approximator.topology.adapt(mesh, self._appraiser, goal)
+            mesh = self._follow(mesh, seed, spring, each)
+        return mesh
 
     def fit(self, frame: Frame, mesh: Mesh) -> Snapshot:
         """Fit the colours alone, to a mesh that stays as it is.

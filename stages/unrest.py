@@ -8,7 +8,7 @@ from stages.advect import Carried
 from stages.mesh import Mesh
 from stages.snapshot import Snapshot
 
-WORSE = 1.2, 1.6
+WORSE = 1.15, 1.45
 """Triangles that came along and now lack less than the first number times what they lacked are
 well followed; beyond the second one they fit no better than others would."""
 STRANGE = 0.15, 0.35
@@ -21,7 +21,7 @@ FAINT_ENERGY = 0.1
 """What lacks less than this part of a triangle's mean energy is not worth any trouble."""
 FAINT_CONTRAST = 2.0
 """Contrast below this is noise [code values]."""
-LEAST_SHARE = 0.02
+LEAST_SHARE = 0.04
 """Less than this part of the triangles is left as it is: a few limbs, or what was uncovered."""
 
 
