@@ -18,7 +18,6 @@ from stages.snapshot import Snapshot
 from stages.spaces import SPACES
 from stages.topology import TOPOLOGIES, Goal
 from stages.topology.goal import SLIVER_HEIGHT
-from stages.topology.growth import Growth
 from stages.unrest import Unrest
 from warp_kernels.color_model import CHANNELS, COLOR_MODELS, ColorModel
 from warp_kernels.device import Device
@@ -39,10 +38,8 @@ FRAME_ROUND = 3
 FRAME_SAVING = 0.0025
 """Once a round saves less than this part of the energy, a later frame is done: where little has
 changed one or two rounds are enough, where something moves fast all of them are worth it."""
-RENEWAL = Growth(start=1.0, peak=2.5, grown=0.2, settled=0.9)
-"""Where a later frame boils it is refined as first frames are, over a share of its rounds."""
 RENEWED = 0.8
-"""That share."""
+"""Where a later frame boils it is refined anew over this share of its rounds."""
 CALM_QUALITY = 0.02
 """A later frame keeps its number of triangles while its rmse is this close to the wanted one."""
 MOST_DRIFT = 0.02
@@ -226,8 +223,9 @@ class Triangulator:
         refine = self.options.refine
         count = refine.triangles if refine.quality is None else mesh.triangle_count
         boiling = int(unrest.boiling(mesh).sum())
+        renewal = self._approximator.topology.renewal
         for number in range(1, rounds + 1):
-            more = RENEWAL.count(number / rounds, boiling) - boiling
+            more = renewal.count(number / rounds, boiling) - boiling
             goal = self._goal(count + more, calm=True, unrest=unrest)
             mesh = self._approximator.topology.adapt(mesh, self._appraiser, goal)
             mesh = self._follow(mesh, seed, spring, each)
