@@ -20,6 +20,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
+from itertools import pairwise
 from pathlib import Path
 
 import cv2
@@ -209,7 +210,9 @@ class Solver:
         self._renderer = Renderer(device, size, size, (Flat(),))
 
     def _first(self, frame: Frame) -> Snapshot:
-        return self._triangulator.first(frame, Importance(), np.random.default_rng([0, frame.index]))
+        return self._triangulator.first(
+            frame, Importance(), np.random.default_rng([0, frame.index])
+        )
 
     def independent(self, pixels: list[np.ndarray]) -> Shown:
         """Each frame from scratch."""
@@ -238,7 +241,9 @@ def _frames(pixels: list[np.ndarray]) -> list[Frame]:
 def error(pixels: list[np.ndarray], pictures: list[np.ndarray], where: np.ndarray) -> float:
     """Mean over the settled frames of the root mean square error in a part of the picture."""
     pairs = zip(pixels[SETTLED:], pictures[SETTLED:], strict=True)
-    return float(np.mean([np.sqrt(np.square(a[where] - b[where].astype(float)).mean()) for a, b in pairs]))
+    return float(
+        np.mean([np.sqrt(np.square(a[where] - b[where].astype(float)).mean()) for a, b in pairs])
+    )
 
 
 def restlessness(motions: list[Motion], pictures: list[np.ndarray], where: np.ndarray) -> float:
@@ -263,7 +268,7 @@ def row(kind: str, pans: bool, options: argparse.Namespace) -> tuple[str, ...]:
     pixels = clip(kind, options.frames, pans=pans)
     solver = Solver((2 * WIDTH, HEIGHT), options.triangles)
     ways = {"independent": solver.independent(pixels), "followed": solver.followed(pixels)}
-    motions = [Motion.between(a, b) for a, b in zip(pixels, pixels[1:], strict=False)]
+    motions = [Motion.between(a, b) for a, b in pairwise(pixels)]
     if options.keep is not None:
         folder = options.keep / f"{kind}_{'pan' if pans else 'still'}"
         _keep(folder, "source", pixels)

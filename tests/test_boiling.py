@@ -1,6 +1,7 @@
 """Where the picture boils the mesh is free, and where it is calm it stands still, side by side."""
 
 from functools import lru_cache
+from itertools import pairwise
 from pathlib import Path
 
 import cv2
@@ -149,7 +150,7 @@ def test_springs_let_go_where_it_boils(monkeypatch) -> None:
 def test_calm_half_stays_and_the_other_fits() -> None:
     """Vertices beside what boils stay where they are; what boils fits as if it were alone."""
     found = followed("energy")
-    for before, after in zip(found, found[1:], strict=False):
+    for before, after in pairwise(found):
         calm = np.flatnonzero(before.mesh.vertices[:, 0] < MIDDLE - 24)
         kept = np.isin(before.mesh.vertex_ids[calm], after.mesh.vertex_ids)
         assert kept.mean() > 0.9

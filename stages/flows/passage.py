@@ -64,7 +64,5 @@ class Passage:
             Misfit and contrast of the patches [code values], shape [N, 2].
         """
         earlier, later = self.earlier.reduced(LINES), self.later.reduced(LINES)
-        scale = np.array(
-            [earlier.shape[1] / self.flow.width, earlier.shape[0] / self.flow.height]
-        )
+        scale = np.array([earlier.shape[1] / self.flow.width, earlier.shape[0] / self.flow.height])
         return unlikeness(scale * points, scale * steps, earlier, later)
