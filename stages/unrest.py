@@ -9,11 +9,11 @@ from stages.mesh import Mesh
 from stages.snapshot import Snapshot
 
 WORSE = 1.15, 1.45
-"""Triangles that came along and now lack less than the first number times what they lacked are
-well followed; beyond the second one they fit no better than others would."""
+"""Triangles that came along and lack less than the first number times what they lacked before are
+well followed; from the second one on their places mean nothing any more."""
 STRANGE = 0.15, 0.35
-"""The same for the misfit of patches beside their contrast: two patches that have nothing to do
-with each other differ by about 1, and of something that moves fast, or under grain, 0.1 to 0.3."""
+"""The same for the misfit of patches as a part of their contrast: that of patches which have
+nothing to do with each other is about 1, and of what moves fast, or under grain, 0.1 to 0.3."""
 RINGS = 4
 """Both are told by the triangles that can be reached over so many edges: a single one may fit
 badly wherever something moves."""
@@ -22,7 +22,8 @@ FAINT_ENERGY = 0.1
 FAINT_CONTRAST = 2.0
 """Contrast below this is noise [code values]."""
 LEAST_SHARE = 0.04
-"""Less than this part of the triangles is left as it is: a few limbs, or what was uncovered."""
+"""Where less than this part of the triangles boils it is left as it is: that may as well be a
+limb that moves fast, or what was just uncovered."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,12 +58,14 @@ class Unrest:
         if not faint > 0:
             return None
         worse = _around(mesh, energies + faint) / _around(mesh, before + faint)
+        found = cls(mesh.vertex_ids, _ramp(worse, *WORSE))
+        if not found.is_worth_it(mesh):
+            return None
         misfits, contrasts = carried.patches.astype(np.float64).T
         strange = _around(mesh, misfits[mesh.triangles].sum(axis=1))
         strange /= _around(mesh, (contrasts + FAINT_CONTRAST)[mesh.triangles].sum(axis=1))
-        values = _ramp(worse, *WORSE) * _ramp(strange, *STRANGE)
-        found = cls(mesh.vertex_ids, values)
-        return found if found.boiling(mesh).mean() >= LEAST_SHARE else None
+        found = cls(mesh.vertex_ids, found.values * _ramp(strange, *STRANGE))
+        return found if found.is_worth_it(mesh) else None
 
     def at(self, mesh: Mesh) -> np.ndarray:
         """How much it boils around the vertices of what has become of the mesh, shape [V].
@@ -104,6 +107,14 @@ class Unrest:
             mesh: The mesh after any edits.
         """
         return self.calm(mesh) <= 0.5
+
+    def is_worth_it(self, mesh: Mesh) -> bool:
+        """Whether so much boils that something should be done.
+
+        Args:
+            mesh: The mesh after any edits.
+        """
+        return bool(self.boiling(mesh).mean() >= LEAST_SHARE)
 
 
 def _kept(earlier: Snapshot, mesh: Mesh) -> np.ndarray:
