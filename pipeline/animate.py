@@ -255,7 +255,8 @@ def solved_frames(
         elif step.passage.is_still and job.weights is None:
             snapshot = snapshot.again(step.frame)
         else:
-            snapshot = triangulator.next(step.frame, advect(snapshot.mesh, step.passage))
+            carried = advect(snapshot.mesh, step.passage)
+            snapshot = triangulator.next(step.frame, carried, snapshot)
         yield Solved(snapshot, step.shot, step.frame.pixels if job.needs_source else None)
 
 

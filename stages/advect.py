@@ -22,6 +22,9 @@ class Carried:
     """The mesh, where the motion has taken it."""
     trust: np.ndarray
     """How far that is where each vertex belongs [0..1], shape [V]."""
+    patches: np.ndarray | None = None
+    """How badly the patches around the vertices fit where they are now, and their contrast [code
+    values], shape [V, 2]; None if that is not known."""
 
 
 def advect(mesh: Mesh, passage: Passage) -> Carried:
@@ -45,7 +48,9 @@ def advect(mesh: Mesh, passage: Passage) -> Carried:
     steps, trust = passage.follow(mesh.vertices)
     kept, steps = collapse_covered(mesh, sliding(mesh, steps), LOWEST)
     places = np.searchsorted(mesh.vertex_ids, kept.vertex_ids)  # ids ascend with the rows
-    return Carried(kept.moved(kept.vertices + unfolded(kept, steps)), trust[places])
+    steps = unfolded(kept, steps)
+    patches = passage.unlikeness(kept.vertices, steps)
+    return Carried(kept.moved(kept.vertices + steps), trust[places], patches)
 
 
 def sliding(mesh: Mesh, steps: np.ndarray) -> np.ndarray:

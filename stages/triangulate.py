@@ -20,6 +20,7 @@ from stages.snapshot import Snapshot
 from stages.spaces import SPACES
 from stages.topology import TOPOLOGIES, Goal
 from stages.topology.goal import SLIVER_HEIGHT
+from stages.unrest import Unrest
 from warp_kernels.color_model import CHANNELS, COLOR_MODELS, ColorModel
 from warp_kernels.device import Device
 from warp_kernels.errors import OptionError
@@ -40,6 +41,8 @@ FRAME_ROUND = 3
 FRAME_SAVING = 0.0025
 """Once a round saves less than this part of the energy, a later frame is done: where little has
 changed one or two rounds are enough, where something moves fast all of them are worth it."""
+RENEWED = 0.8
+"""Where a later frame boils it is refined anew over this share of its rounds."""
 CALM_QUALITY = 0.02
 """A later frame keeps its number of triangles while its rmse is this close to the wanted one."""
 MOST_DRIFT = 0.02
@@ -177,12 +180,14 @@ class Triangulator:
         self._workspace.load_image(self._space.convert(frame.pixels), frame.weights)
         self._appraiser.forget()
 
-    def next(self, frame: Frame, seed: Carried) -> Snapshot:
+    def next(self, frame: Frame, seed: Carried, earlier: Snapshot | None = None) -> Snapshot:
         """Triangulate a frame that continues a shot.
 
         Args:
             frame: The frame.
             seed: The previous frame's mesh, carried along by the motion.
+            earlier: The previous frame, by which it is told where the picture boils; None if it
+                does not.
         """
         self._load(frame)
         iterations = self.options.frame_iterations
@@ -190,14 +195,45 @@ class Triangulator:
         each = iterations // (rounds + 1)
         convergence = Convergence(FRAME_SAVING, patience=1)
         spring = SPRING * self._rmse(seed.mesh) ** 2
+        unrest = self._unrest(frame, seed, earlier)
+        if unrest is not None:
+            seed = replace(seed, trust=seed.trust * (1.0 - unrest.values))
         mesh = self._follow(seed.mesh, seed, spring, each)
-        goal = self._goal(self._followed_count(mesh), calm=True)
+        if unrest is not None:
+            renewing = int(RENEWED * rounds)
+            mesh = self._renew(mesh, seed, unrest, spring, renewing, each)
+            rounds -= renewing
+        goal = self._goal(self._followed_count(mesh), calm=True, unrest=unrest)
         for _ in range(rounds):
             if each and convergence.is_reached(self._workspace.last_energy()):
                 break
             mesh = self._approximator.topology.adapt(mesh, self._appraiser, goal)
             mesh = self._follow(mesh, seed, spring, each)
         return self._snapshot(frame, self._approximator.within_limits(mesh, goal))
+
+    def _renew(
+        self, mesh: Mesh, seed: Carried, unrest: Unrest, spring: float, rounds: int, each: int
+    ) -> Mesh:
+        """Refine a mesh anew where it boils, and adapt it elsewhere as always.
+
+        Args:
+            mesh: What has become of the seed.
+            seed: Where the motion took the vertices.
+            unrest: Where it boils.
+            spring: As in `_follow` [code value^2].
+            rounds: Looks at the topology.
+            each: Iterations after each of them.
+        """
+        refine = self.options.refine
+        count = refine.triangles if refine.quality is None else mesh.triangle_count
+        boiling = int(unrest.boiling(mesh).sum())
+        renewal = self._approximator.topology.renewal
+        for number in range(1, rounds + 1):
+            more = renewal.count(number / rounds, boiling) - boiling
+            goal = self._goal(count + more, calm=True, unrest=unrest)
+            mesh = self._approximator.topology.adapt(mesh, self._appraiser, goal)
+            mesh = self._follow(mesh, seed, spring, each)
+        return mesh
 
     def fit(self, frame: Frame, mesh: Mesh) -> Snapshot:
         """Fit the colours alone, to a mesh that stays as it is.
@@ -210,6 +246,16 @@ class Triangulator:
             self._load(frame)
             load_mesh(self._workspace, mesh)
         return self._snapshot(frame, mesh)
+
+    def _unrest(self, frame: Frame, seed: Carried, earlier: Snapshot | None) -> Unrest | None:
+        """Where the picture boils, if anywhere; told by the colours that snapshots have."""
+        if earlier is None:
+            return None
+        if self._fitting is self._workspace:
+            return Unrest.between(earlier, seed, self._appraiser.energies(seed.mesh))
+        self._fitting.load_image(frame.pixels, frame.weights)
+        load_mesh(self._fitting, seed.mesh)
+        return Unrest.between(earlier, seed, self._fitting.fit()[1])
 
     def _followed_count(self, mesh: Mesh) -> int:
         """How many triangles a later frame shall have; a quality lets their number drift."""
@@ -259,10 +305,10 @@ class Triangulator:
         samples = CHANNELS * mesh.width * mesh.height
         return float(np.sqrt(2.0 * self._appraiser.energies(mesh).sum() / samples))
 
-    def _goal(self, count: int, *, calm: bool = False) -> Goal:
+    def _goal(self, count: int, *, calm: bool = False, unrest: Unrest | None = None) -> Goal:
         """What the mesh must be like, with a number of triangles."""
         refine = self.options.refine
-        return Goal(count, refine.error, calm, refine.largest_area)
+        return Goal(count, refine.error, calm, refine.largest_area, unrest)
 
     def _snapshot(self, frame: Frame, mesh: Mesh) -> Snapshot:
         """Fit the colours to the mesh that lies in the workspace, just optimised."""

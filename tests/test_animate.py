@@ -47,9 +47,9 @@ class RecordingTriangulator(Triangulator):
         self.snapshots.append(super().first(frame, layout, rng))
         return self.snapshots[-1]
 
-    def next(self, frame: Frame, seed: Carried) -> Snapshot:
+    def next(self, frame: Frame, seed: Carried, earlier: Snapshot | None = None) -> Snapshot:
         """Triangulate a later frame and keep the result."""
-        self.snapshots.append(super().next(frame, seed))
+        self.snapshots.append(super().next(frame, seed, earlier))
         return self.snapshots[-1]
 
 

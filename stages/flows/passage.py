@@ -7,7 +7,7 @@ import numpy as np
 from stages.flows import Flow
 from stages.flows.field import FlowField
 from stages.flows.view import View
-from stages.flows.vote import LINES, vote
+from stages.flows.vote import LINES, unlikeness, vote
 
 DOUBTFUL = 2.0
 """Motion is trusted by half where patches differ by this in the mean [code values]; found by trial
@@ -52,3 +52,17 @@ class Passage:
         pictures = self.earlier.reduced(LINES), self.later.reduced(LINES)
         steps, misfits = vote(points, self.flow, *pictures)
         return steps, 1.0 / (1.0 + (misfits.astype(np.float64) / DOUBTFUL) ** 2)
+
+    def unlikeness(self, points: np.ndarray, steps: np.ndarray) -> np.ndarray:
+        """How much the picture around points looks unlike that around where they went.
+
+        Args:
+            points: Positions in the earlier picture [px], shape [N, 2].
+            steps: Their steps [px], shape [N, 2].
+
+        Returns:
+            Misfit and contrast of the patches [code values], shape [N, 2].
+        """
+        earlier, later = self.earlier.reduced(LINES), self.later.reduced(LINES)
+        scale = np.array([earlier.shape[1] / self.flow.width, earlier.shape[0] / self.flow.height])
+        return unlikeness(scale * points, scale * steps, earlier, later)

@@ -54,6 +54,28 @@ def vote(
     return motions[chosen], misfits[chosen]
 
 
+def unlikeness(
+    points: np.ndarray, steps: np.ndarray, earlier: np.ndarray, later: np.ndarray
+) -> np.ndarray:
+    """How much the patch around each point looks unlike what is where it has gone.
+
+    Args:
+        points: Positions in the earlier picture [px of the pictures], shape [N, 2].
+        steps: How far they went [px of the pictures], shape [N, 2].
+        earlier: The earlier picture, shape [h, w] uint8.
+        later: The later picture, of the same shape.
+
+    Returns:
+        Mean absolute difference of the two patches, and the root of their mean variance [code
+        values], shape [N, 2].
+    """
+    centres = points - 0.5
+    cut, laid = _patches(earlier, centres), _patches(later, centres + steps)
+    misfits = cv2.absdiff(laid, cut).mean(axis=1, dtype=np.float64)
+    variances = cut.var(axis=1, dtype=np.float64) + laid.var(axis=1, dtype=np.float64)
+    return np.stack([misfits, np.sqrt(0.5 * variances)], axis=1)
+
+
 def _misfits(
     points: np.ndarray, motions: np.ndarray, earlier: np.ndarray, later: np.ndarray
 ) -> np.ndarray:

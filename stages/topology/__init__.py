@@ -1,7 +1,7 @@
 """How the edges of a mesh are kept: `TOPOLOGIES` names the ways for the command line.
 
-A topology is a frozen dataclass of parameters, one of them its `growth`, with one method
-`adapt(mesh, appraiser, goal) -> Mesh`; a new one is a file and a line here.
+A topology is a frozen dataclass of parameters, two of them its `growth` and its `renewal`, with one
+method `adapt(mesh, appraiser, goal) -> Mesh`; a new one is a file and a line here.
 """
 
 from typing import Protocol
@@ -22,6 +22,11 @@ class Topology(Protocol):
     @property
     def growth(self) -> Growth:
         """How the number of triangles develops in a first frame."""
+        ...
+
+    @property
+    def renewal(self) -> Growth:
+        """How it develops in later frames, where the picture boils."""
         ...
 
     def adapt(self, mesh: Mesh, appraiser: Appraiser, goal: Goal) -> Mesh:

@@ -14,6 +14,8 @@ from stages.topology.growth import Growth
 
 HALF = Growth(start=0.5, peak=1.0, grown=0.6, settled=0.6)
 """Refinement places every second triangle."""
+STEADY = Growth(start=1.0, peak=1.0, grown=0.0, settled=0.0)
+"""No triangle goes that is not a sliver, so there must not be too many."""
 
 
 @dataclass(frozen=True)
@@ -25,6 +27,8 @@ class Delaunay:
 
     growth: Growth = HALF
     """How the number of triangles develops in a first frame."""
+    renewal: Growth = STEADY
+    """How it develops where a followed picture boils."""
 
     def adapt(self, mesh: Mesh, appraiser: Appraiser, goal: Goal) -> Mesh:
         """Collapse, split and flip.

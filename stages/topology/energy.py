@@ -18,12 +18,20 @@ from stages.edits.neighbourhood import edge_triangles, stars
 from stages.mesh import Mesh
 from stages.topology.goal import SLIVER_HEIGHT, Goal
 from stages.topology.growth import Growth
-from stages.topology.ranking import LEAST_GAIN, ranked_collapses, ranked_flips, ranked_splits
+from stages.topology.ranking import (
+    LEAST_GAIN,
+    beside_edges,
+    ranked_collapses,
+    ranked_flips,
+    ranked_splits,
+)
 from stages.topology.slivers import sliver_changes
 
 TWICE = Growth(start=1.0, peak=2.0, grown=0.2, settled=0.9)
 """Twice the triangles at first: what is then taken away, one vertex at a time, are those that
 matter least, and the rest stand where the picture needs them: 5 % less error than by growth."""
+ANEW = Growth(start=1.0, peak=2.5, grown=0.2, settled=0.9)
+"""The same with fewer iterations, from triangles that stand in wrong places."""
 CALM_SLIVER_HEIGHT = 0.3
 """In a followed picture triangles thinner than this collapse [px]; a higher bar would make those
 that hover about it come and go."""
@@ -55,8 +63,13 @@ class Energy:
     """As `relocated`, in a followed picture."""
     calm_profit: float = 2.0
     """As `profit`, in a followed picture."""
+    calm_hold: float = 1.1
+    """In a followed picture that boils in places, a vertex where it is calm goes only if one where
+    it boils would cost this many times as much."""
     growth: Growth = TWICE
     """How the number of triangles develops in a first frame."""
+    renewal: Growth = ANEW
+    """How it develops where a followed picture boils."""
 
     def adapt(self, mesh: Mesh, appraiser: Appraiser, goal: Goal) -> Mesh:
         """Remove slivers, then flip, take vertices away and insert others, all measured once.
@@ -85,7 +98,10 @@ class Energy:
         free[edge_triangles(mesh, flips)] = False
         missing = goal.count - mesh.triangle_count + _lost(mesh, slivers)
         splits, gains, points = self._splits(mesh, appraiser, goal, missing)
-        going = self._collapses(mesh, appraiser, goal, free, gains, missing)
+        floors = self._floors(mesh, appraiser, goal, splits)
+        above = np.argsort(gains <= floors, kind="stable")  # where it boils, floors are lower
+        splits, gains, points, floors = splits[above], gains[above], points[above], floors[above]
+        going = self._collapses(mesh, appraiser, goal, free, gains, floors, missing)
         some = _affordable(mesh, splits, free, missing + _lost(mesh, going))
         going, flips = np.concatenate([slivers, going]), np.concatenate([turned, flips])
         # edits that do not touch each other leave each other's half-edges where they are
@@ -108,20 +124,41 @@ class Energy:
         if not goal.calm:
             return ranked_flips(mesh, appraiser, least_share=0.0, floor=0.0)
         floor = self.calm_flip_floor * appraiser.energies(mesh).mean()
-        return ranked_flips(mesh, appraiser, self.calm_flip, floor)
+        calm = None if goal.unrest is None else goal.unrest.calm(mesh)
+        return ranked_flips(mesh, appraiser, self.calm_flip, floor, calm)
 
     def _splits(
         self, mesh: Mesh, appraiser: Appraiser, goal: Goal, missing: int
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Edges worth splitting, what each saves per new triangle, and the places; best first."""
         most = (max(0, missing) + 1) // 2 + self._relocations(mesh, goal)
-        edges, gains, points = ranked_splits(mesh, appraiser, most)
+        within = None
+        if goal.unrest is not None and self._is_growing(mesh, goal):
+            within = goal.unrest.boiling(mesh)
+        edges, gains, points = ranked_splits(mesh, appraiser, most, within)
         wanted = gains > LEAST_GAIN
         if goal.threshold is not None:
             floor = goal.threshold**2 * mesh.width * mesh.height
             bad = appraiser.energies(mesh) > floor
             wanted &= bad[edges // 3] | bad[np.maximum(mesh.twins[edges], 0) // 3]
         return edges[wanted], gains[wanted], points[wanted]
+
+    def _floors(
+        self, mesh: Mesh, appraiser: Appraiser, goal: Goal, edges: np.ndarray
+    ) -> np.ndarray:
+        """What splits of edges must save for a vertex to come from elsewhere, shape [N]."""
+        if not goal.calm:
+            return np.zeros(len(edges))
+        floor = self.calm_floor * appraiser.energies(mesh).mean()
+        if goal.unrest is None:
+            return np.full(len(edges), floor)
+        return floor * beside_edges(mesh, goal.unrest.calm(mesh), edges)
+
+    def _worth(self, mesh: Mesh, goal: Goal) -> np.ndarray | None:
+        """How firmly vertices are held on to, beside those where it is calm, shape [V]."""
+        if goal.unrest is None:
+            return None
+        return 1.0 - (1.0 - 1.0 / self.calm_hold) * goal.unrest.at(mesh)
 
     def _collapses(
         self,
@@ -130,6 +167,7 @@ class Energy:
         goal: Goal,
         free: np.ndarray,
         gains: np.ndarray,
+        floors: np.ndarray,
         missing: int,
     ) -> np.ndarray:
         """Choose the vertices that are missed least, by half-edges out of them.
@@ -143,13 +181,14 @@ class Energy:
             goal: What to reach.
             free: Triangles that no change has claimed yet, [T] bool; updated.
             gains: What splits save per triangle, best first.
+            floors: What each must save for a vertex to come from elsewhere.
             missing: Triangles below the count; below 0 where there are too many.
         """
         excess = max(0, (1 - missing) // 2)
         most = excess + self._relocations(mesh, goal)
         if most == 0:
             return np.empty(0, dtype=np.int64)
-        going, costs = ranked_collapses(mesh, appraiser, most)
+        going, costs = ranked_collapses(mesh, appraiser, most, self._worth(mesh, goal))
         apart = _away_from(mesh, going, free)
         going, costs = going[apart], costs[apart]
         apart = independent_collapses(mesh, going)
@@ -157,9 +196,9 @@ class Energy:
         # a vertex away pays for one split of an inner edge: two triangles
         pairs = max(0, min(len(going), most) - excess)
         pairs = min(pairs, len(gains))
-        profit, floor = self.profit, 0.0
+        profit, floor = self.profit, np.zeros(pairs)
         if goal.calm:
-            profit, floor = self.calm_profit, self.calm_floor * appraiser.energies(mesh).mean()
+            profit, floor = self.calm_profit, floors[:pairs]
         worth = np.maximum(profit * costs[excess : excess + pairs], floor)
         elsewhere = gains[:pairs] > worth
         going = going[: excess + int(elsewhere.sum())]
@@ -175,7 +214,11 @@ class Energy:
         """Most vertices that may move elsewhere."""
         if self._is_growing(mesh, goal):
             return 0
-        return int((self.calm_relocated if goal.calm else self.relocated) * goal.count)
+        if not goal.calm:
+            return int(self.relocated * goal.count)
+        more = self.relocated - self.calm_relocated
+        boiling = 0 if goal.unrest is None else int(goal.unrest.boiling(mesh).sum())
+        return int(self.calm_relocated * goal.count + more * boiling)
 
 
 def _lost(mesh: Mesh, collapses: np.ndarray) -> int:

@@ -3,6 +3,8 @@
 from dataclasses import dataclass, replace
 from math import inf
 
+from stages.unrest import Unrest
+
 
 @dataclass(frozen=True)
 class Goal:
@@ -16,6 +18,8 @@ class Goal:
     """Whether a picture is being followed: only what clearly pays may change."""
     largest_area: float = inf
     """No triangle may become larger [px^2]."""
+    unrest: Unrest | None = None
+    """Where a followed picture boils, so that more may change there; None for nowhere."""
 
     def tightened(self, count: int, spare: float) -> "Goal":
         """The same goal with another count, and a part of the area to spare."""

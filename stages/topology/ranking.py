@@ -17,7 +17,13 @@ LEAST_EXAMINED = 100
 """Splits measured at least: where few are wanted all of eight may touch other changes."""
 
 
-def ranked_flips(mesh: Mesh, appraiser: Appraiser, least_share: float, floor: float) -> np.ndarray:
+def ranked_flips(
+    mesh: Mesh,
+    appraiser: Appraiser,
+    least_share: float,
+    floor: float,
+    calm: np.ndarray | None = None,
+) -> np.ndarray:
     """Edges of the measured mesh whose flip pays.
 
     Args:
@@ -25,18 +31,22 @@ def ranked_flips(mesh: Mesh, appraiser: Appraiser, least_share: float, floor: fl
         appraiser: Has measured it.
         least_share: Smallest gain, as a part of the energy of the edge's two triangles.
         floor: Smallest gain [code value^2 px].
+        calm: How much of both counts at each triangle [0..1], [T]; None for all of it.
     """
     energies = appraiser.energies(mesh)
     edges = mesh.edge_half_edges
     gains = appraiser.flip_gains(edges)
     before = energies[edges // 3] + energies[np.maximum(mesh.twins[edges], 0) // 3]
-    wanted = gains > np.maximum(least_share * before, max(floor, LEAST_GAIN))
+    least = np.maximum(least_share * before, floor)
+    if calm is not None:
+        least *= beside_edges(mesh, calm, edges)
+    wanted = gains > np.maximum(least, LEAST_GAIN)
     edges, gains = edges[wanted], gains[wanted]
     return edges[np.argsort(-gains, kind="stable")]
 
 
 def ranked_splits(
-    mesh: Mesh, appraiser: Appraiser, most: int
+    mesh: Mesh, appraiser: Appraiser, most: int, within: np.ndarray | None = None
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Edges of the measured mesh, what a split of each saves per new triangle, and its place.
 
@@ -49,9 +59,12 @@ def ranked_splits(
         mesh: The measured mesh.
         appraiser: Has measured it.
         most: Number of edges worth knowing.
+        within: Triangles that may be split, [T] bool; None for all.
     """
     energies = appraiser.energies(mesh)
     edges = mesh.edge_half_edges
+    if within is not None:
+        edges = edges[~beside_edges(mesh, ~within, edges)]
     twins = mesh.twins[edges]
     added = np.where(twins >= 0, 2, 1)
     beside = energies[edges // 3] + np.where(twins >= 0, energies[twins // 3], 0.0)
@@ -64,7 +77,9 @@ def ranked_splits(
     return edges[order], gains[order], points[order]
 
 
-def ranked_collapses(mesh: Mesh, appraiser: Appraiser, most: int) -> tuple[np.ndarray, np.ndarray]:
+def ranked_collapses(
+    mesh: Mesh, appraiser: Appraiser, most: int, worth: np.ndarray | None = None
+) -> tuple[np.ndarray, np.ndarray]:
     """Half-edges of the measured mesh and what each collapse costs per lost triangle, best first.
 
     If all triangles around a vertex took one colour, the energy would grow by the spread of their
@@ -75,8 +90,11 @@ def ranked_collapses(mesh: Mesh, appraiser: Appraiser, most: int) -> tuple[np.nd
         mesh: The measured mesh.
         appraiser: Has measured it.
         most: Number of vertices that may go.
+        worth: Factor of the costs at each vertex, [V]; None for 1.
     """
     spread = np.where(mesh.on_left_right & mesh.on_top_bottom, np.inf, _spread(mesh, appraiser))
+    if worth is not None:
+        spread *= worth
     likely = np.argsort(spread, kind="stable")[: EXAMINED * most]
     chosen = np.zeros(mesh.vertex_count, dtype=bool)
     chosen[likely] = True
@@ -86,8 +104,23 @@ def ranked_collapses(mesh: Mesh, appraiser: Appraiser, most: int) -> tuple[np.nd
     costs = appraiser.collapse_costs(half_edges)
     half_edges, costs = half_edges[costs < BARRED], costs[costs < BARRED]
     costs /= np.where(mesh.twins[half_edges] >= 0, 2, 1)
+    if worth is not None:
+        costs *= worth[origins[half_edges]]
     order = np.argsort(costs, kind="stable")[: EXAMINED * most]
     return half_edges[order], costs[order]
+
+
+def beside_edges(mesh: Mesh, values: np.ndarray, edges: np.ndarray) -> np.ndarray:
+    """The larger value of the triangles beside each edge.
+
+    Args:
+        mesh: A mesh.
+        values: One for each triangle, shape [T].
+        edges: Half-edges, shape [N].
+    """
+    twins = mesh.twins[edges]
+    own = values[edges // 3]
+    return np.where(twins >= 0, np.maximum(own, values[twins // 3]), own)
 
 
 def _spread(mesh: Mesh, appraiser: Appraiser) -> np.ndarray:
