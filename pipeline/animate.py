@@ -12,6 +12,7 @@ from time import perf_counter
 
 import numpy as np
 
+from pipeline.attention import Attention
 from pipeline.drawing import Drawing, check_drawing
 from pipeline.followed import followed_shares
 from pipeline.job import Job
@@ -29,7 +30,7 @@ from stages.frame import Frame
 from stages.media import Decoder, FrameRange, MediaInfo, open_decoder
 from stages.snapshot import Snapshot
 from stages.triangulate import Triangulator
-from stages.weights import EvenWeights, WeightMap, open_weights
+from stages.weights import WeightMap
 from warp_kernels.device import Device
 from warp_kernels.errors import OptionError
 
@@ -153,12 +154,14 @@ def _convert(job: Job, progress: Progress, *, draws: bool) -> Animated:
         if draws:
             check_drawing(job, info)
         device = Device(job.device, job.threads)
-        weights = open_weights(job.weights, (info.width, info.height), job.frame_range)
+        attention = Attention(job.foci, info, job.frame_range.step)
+        size = (info.width, info.height)
+        maps = [WeightMap(m.file, size, job.frame_range, m.strength) for m in job.maps]
         triangulator = _triangulator(job, info, device)
         drawing = Drawing(job, info, device) if draws else None
         tally = _Tally(progress, _expected(job, info.frame_count))
         notes = [] if past is None else past.notes
-        found = _open_steps(decoder, weights, job, past, notes)
+        found = _open_steps(decoder, attention, maps, job, past, notes)
         with open_track(job, info, past) as track:
             writer = Behind(_Writer(track, drawing), SOLVED_BEHIND)
             with drawing or nullcontext(), closing(found), writer:
@@ -170,30 +173,35 @@ def _convert(job: Job, progress: Progress, *, draws: bool) -> Animated:
             if track is not None:
                 track.finish()
     made = [] if drawing is None else drawing.notes
-    warnings = (*decoder.warnings, *weights.warnings)
-    return tally.result(begun, warnings, [*decoder.notes, *weights.notes, *notes, *made])
+    warnings = [*decoder.warnings, *(text for one in maps for text in one.warnings)]
+    notes += [*attention.notes, *(note for one in maps for note in one.notes)]
+    return tally.result(begun, warnings, [*decoder.notes, *notes, *made])
 
 
 def _triangulator(job: Job, info: MediaInfo, device: Device) -> Triangulator:
     """What makes snapshots of a source for the looks that will be drawn."""
     size = (info.width, info.height)
-    return Triangulator(device, size, job.triangulate, job.fitted, weighted=job.weights is not None)
+    return Triangulator(device, size, job.triangulate, job.fitted)
 
 
 def _open_steps(
     decoder: Decoder,
-    weights: EvenWeights | WeightMap,
+    attention: Attention,
+    maps: Iterable[WeightMap],
     job: Job,
     past: Past | None,
     notes: list[str],
 ) -> Generator[Step, None, None]:
-    """Decode, find cuts and estimate motion ahead of the solution."""
+    """Decode, find cuts, weigh and estimate motion ahead of the solution."""
     reached = None if past is None else past.reached
-    found = steps(with_shots(decoder, job.cuts), decoder.info, job, reached, notes)
-    return ahead(_weighed(found, weights), DECODED_AHEAD)
+    shot_frames = attention.beside(with_shots(decoder, job.cuts))
+    found = steps(shot_frames, decoder.info, job, reached, notes)
+    for weights in maps:
+        found = _weighed(found, weights)
+    return ahead(found, DECODED_AHEAD)
 
 
-def _weighed(found: Iterable[Step], weights: EvenWeights | WeightMap) -> Iterator[Step]:
+def _weighed(found: Iterable[Step], weights: WeightMap) -> Iterator[Step]:
     """Steps whose frames have their weights; frames around the range need none."""
     waiting: deque[Step] = deque()
 
@@ -219,7 +227,7 @@ def _solve(
         if snapshot is None or step.passage is None:
             rng = np.random.default_rng([job.seed, step.frame.index])
             snapshot = triangulator.first(step.frame, job.layout, rng)
-        elif step.passage.is_still and job.weights is None:
+        elif step.repeats and not job.maps:
             snapshot = snapshot.again(step.frame)
         else:
             snapshot = triangulator.next(step.frame, advect(snapshot.mesh, step.passage))
@@ -247,12 +255,10 @@ def _fitted(
         yield from track.snapshots(rows)
         return
     around = FrameRange(rows[0].frame, rows[-1].frame, track.header.frame_range.step)
-    weights = open_weights(job.weights, (info.width, info.height), around)
     triangulator = _triangulator(job, info, device)
     wanted = {row.frame for row in rows}
     with open_decoder(job.source, around) as decoder:
-        frames = (frame for frame in decoder if frame.index in wanted)
-        for frame in weights.beside(frames):
+        for frame in (frame for frame in decoder if frame.index in wanted):
             yield triangulator.fit(frame, track.snapshot(frame.index).mesh)
 
 

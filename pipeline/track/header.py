@@ -13,6 +13,7 @@ from pipeline.plain_values import from_plain, to_plain
 from pipeline.shots import read_cuts
 from pipeline.track.identity import SourceIdentity, identity_of
 from pipeline.version import library_versions, program_version
+from stages.focus.none import NoFocus
 from stages.media import FrameRange, MediaInfo
 from warp_kernels.color_model import COLOR_MODELS, ColorModel
 from warp_kernels.errors import TrackError
@@ -123,6 +124,7 @@ def read_header(path: Path, connection: sqlite3.Connection) -> Header:
     stored = dict(connection.execute("SELECT key, value FROM header").fetchall())
     try:
         rows = {key: json.loads(value) for key, value in stored.items()}
+        rows["options"].setdefault("focus", [to_plain(NoFocus())])  # older tracks knew none
         return Header(
             program=rows["program"],
             libraries=rows["libraries"],
