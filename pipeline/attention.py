@@ -13,7 +13,7 @@ import numpy as np
 
 from pipeline.face_tracks import MEMORY, SPACING, FaceTracks
 from pipeline.shots import ShotFrame
-from stages.focus import Focus, Glance
+from stages.focus import Focus, Glance, spelled
 from stages.focus.faces import Faces
 from stages.focus.maps import enlarged
 from stages.focus.search import FaceSearch
@@ -63,7 +63,8 @@ class Attention:
         self._search = FaceSearch() if faces else None
         self.notes: list[str] = []
         """What was found, one sentence each; complete once the last frame was given."""
-        self._with_faces = self._without = 0
+        self._found = False
+        self._spelled = spelled(members)
 
     def beside(self, shot_frames: Iterable[ShotFrame]) -> Iterator[ShotFrame]:
         """Give frames their weights.
@@ -83,8 +84,10 @@ class Attention:
                 told = waiting.popleft()
                 yield replace(told, frame=self._weighed(told.frame, parts))
         if self._search is not None:
-            found = f"faces in {self._with_faces} of {self._with_faces + self._without} frames"
-            self.notes.append(f"--focus: {found if self._with_faces else 'no face was found'}")
+            found = "faces found" if self._found else "no face found"
+            self.notes.append(f"--focus {self._spelled}: {found}")
+        elif self._spelled != "none":
+            self.notes.append(f"--focus {self._spelled}")
 
     def _part(self, member: Focus) -> _Part:
         """What a member becomes over one shot."""
@@ -100,11 +103,9 @@ class Attention:
         total: np.ndarray | None = None
         for member, part in zip(self._members, parts, strict=True):
             added = part.added(frame.index)
-            if isinstance(member, Faces):
-                self._with_faces += added is not None
-                self._without += added is None
             if added is None:
                 continue
+            self._found = self._found or isinstance(member, Faces)
             added = enlarged(np.float32(member.strength) * added, (frame.width, frame.height))
             total = added if total is None else total + added
         if total is None:

@@ -63,8 +63,6 @@ class FaceTracks:
     def __init__(
         self, search: FaceSearch, size: tuple[int, int], step: int, *, is_still: bool
     ) -> None:
-        self.seen = False
-        """Whether any face was found yet."""
         self._search = search
         self._size = size
         self._step = step
@@ -86,7 +84,6 @@ class FaceTracks:
         if self._key is not None and number % SPACING and not is_last:
             return
         known = self._known_at(frame, number)
-        self.seen = self.seen or bool(known)
         for index in self._waiting:
             self._faces[index] = self._faces_at(index, frame.index, known)
         self._key, self._known, self._waiting = frame.index, known, []

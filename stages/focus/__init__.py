@@ -9,6 +9,7 @@ here. What it does is one of these:
 """
 
 from collections.abc import Iterable
+from dataclasses import fields
 from typing import Protocol, runtime_checkable
 
 import numpy as np
@@ -81,10 +82,15 @@ def resolved(given: Iterable[Focus], weights: str | None) -> tuple[Focus, ...]:
 
 
 def spelled(members: Iterable[Focus]) -> str:
-    """Names of members as `--focus` takes them, joined by +; `none` for nobody.
+    """Members as `--focus` takes them, with what is not usual; `none` for nobody.
 
     Args:
         members: The members.
     """
     names = {cls: name for name, cls in FOCI.items()}
-    return " + ".join(names[type(member)] for member in members) or "none"
+    texts = []
+    for member in members:
+        usual = {field.name: field.default for field in fields(member)}  # type: ignore[arg-type]
+        told = [f"{n}={getattr(member, n)}" for n in usual if getattr(member, n) != usual[n]]
+        texts.append(":".join(filter(None, [names[type(member)], ",".join(told)])))
+    return " ".join(texts) or "none"

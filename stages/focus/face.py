@@ -6,11 +6,11 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-FACE_GAIN, FACE_RADIUS = 4.0, 0.48
+FACE_GAIN, FACE_RADIUS = 5.5, 0.55
 """What is added over a face, and how far it reaches from its middle [face sizes]."""
-EYE_GAIN, EYE_RADII = 6.0, (0.12, 0.08)
+EYE_GAIN, EYE_RADII = 5.0, (0.12, 0.08)
 """The same over each eye; along the line through the eyes and across it [face sizes]."""
-MOUTH_GAIN, MOUTH_RADII = 5.0, (0.16, 0.1)
+MOUTH_GAIN, MOUTH_RADII = 4.0, (0.16, 0.1)
 """The same over the mouth."""
 REACH = 1.0
 """Beyond this distance from its middle a face adds nothing [face sizes]."""

@@ -77,7 +77,7 @@ class Energy:
             mesh, flips = flip_edges(mesh, flips), flips[:0]
         free[edge_triangles(mesh, flips)] = False
         splits, gains, points = self._splits(mesh, appraiser, goal)
-        going = self._collapses(mesh, appraiser, goal, free, gains)
+        going = self._collapses(mesh, appraiser, goal, free, splits, gains)
         lost = np.where(mesh.twins[going] >= 0, 2, 1).sum()
         some = _affordable(mesh, splits, free, int(goal.count - mesh.triangle_count + lost))
         # edits that do not touch each other leave each other's half-edges where they are
@@ -107,7 +107,13 @@ class Energy:
         return edges[wanted], gains[wanted], points[wanted]
 
     def _collapses(
-        self, mesh: Mesh, appraiser: Appraiser, goal: Goal, free: np.ndarray, gains: np.ndarray
+        self,
+        mesh: Mesh,
+        appraiser: Appraiser,
+        goal: Goal,
+        free: np.ndarray,
+        splits: np.ndarray,
+        gains: np.ndarray,
     ) -> np.ndarray:
         """Choose the vertices that are missed least, by half-edges out of them.
 
@@ -119,7 +125,8 @@ class Energy:
             appraiser: Has measured it.
             goal: What to reach.
             free: Triangles that no change has claimed yet, [T] bool; updated.
-            gains: What splits save per triangle, best first.
+            splits: Edges worth splitting, best first.
+            gains: What these save per triangle.
         """
         excess = max(0, (mesh.triangle_count - goal.count + 1) // 2)
         most = excess + self._relocations(mesh, goal)
@@ -133,9 +140,11 @@ class Energy:
         # a vertex away pays for one split of an inner edge: two triangles
         pairs = max(0, min(len(going), most) - excess)
         pairs = min(pairs, len(gains))
-        profit, floor = self.profit, 0.0
+        profit: float = self.profit
+        floor: float | np.ndarray = 0.0
         if goal.calm:
             profit, floor = self.calm_profit, self.calm_floor * appraiser.energies(mesh).mean()
+            floor *= appraiser.emphasis(splits[:pairs])
         worth = np.maximum(profit * costs[excess : excess + pairs], floor)
         elsewhere = gains[:pairs] > worth
         going = going[: excess + int(elsewhere.sum())]

@@ -24,13 +24,14 @@ def ranked_flips(mesh: Mesh, appraiser: Appraiser, least_share: float, floor: fl
         mesh: The measured mesh.
         appraiser: Has measured it.
         least_share: Smallest gain, as a part of the energy of the edge's two triangles.
-        floor: Smallest gain [code value^2 px].
+        floor: Smallest gain, where errors count as on the whole [code value^2 px].
     """
     energies = appraiser.energies(mesh)
     edges = mesh.edge_half_edges
     gains = appraiser.flip_gains(edges)
     before = energies[edges // 3] + energies[np.maximum(mesh.twins[edges], 0) // 3]
-    wanted = gains > np.maximum(least_share * before, max(floor, LEAST_GAIN))
+    least = np.maximum(floor * appraiser.emphasis(edges), LEAST_GAIN)
+    wanted = gains > np.maximum(least_share * before, least)
     edges, gains = edges[wanted], gains[wanted]
     return edges[np.argsort(-gains, kind="stable")]
 
