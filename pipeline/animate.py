@@ -156,7 +156,7 @@ def _convert(job: Job, progress: Progress, *, draws: bool) -> Animated:
         device = Device(job.device, job.threads)
         attention = Attention(job.foci, info, job.frame_range.step)
         size = (info.width, info.height)
-        maps = [WeightMap(m.file, size, job.frame_range, m.strength) for m in job.maps]
+        maps = [WeightMap(str(m.file), size, job.frame_range, m.strength) for m in job.maps]
         triangulator = _triangulator(job, info, device)
         drawing = Drawing(job, info, device) if draws else None
         tally = _Tally(progress, _expected(job, info.frame_count))

@@ -39,7 +39,11 @@ class WeightMap:
     """
 
     def __init__(
-        self, path: str, size: tuple[int, int], frame_range: FrameRange, strength: float = 1.0
+        self,
+        path: str,
+        size: tuple[int, int],
+        frame_range: FrameRange,
+        strength: float = 1.0,
     ) -> None:
         self.notes: list[str] = []
         """Choices that were made, one sentence each."""

@@ -16,8 +16,8 @@ class Picture(Strength):
         OptionError: If no picture is named.
     """
 
-    file: str = field(
-        default="",
+    file: str | None = field(
+        default=None,
         metadata={"help": "grey still, numbered stills or video of the source's size"},
         kw_only=False,
     )

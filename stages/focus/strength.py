@@ -4,8 +4,8 @@ from dataclasses import dataclass, field
 
 from warp_kernels.errors import OptionError
 
-STRONGEST = 4.0
-"""Largest strength: beyond it the rest of the picture falls apart."""
+STRENGTHS = (0.0, 4.0)
+"""Least and largest strength: beyond it the rest of the picture falls apart."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -18,9 +18,10 @@ class Strength:
 
     strength: float = field(
         default=1.0,
-        metadata={"help": "how much it adds; 0 for nothing", "range": (0.0, STRONGEST)},
+        metadata={"help": "how much it adds; 0 for nothing", "range": STRENGTHS},
     )
 
     def __post_init__(self) -> None:
-        if not 0.0 <= self.strength <= STRONGEST:
-            raise OptionError(f"strength {self.strength:g}: must lie between 0 and {STRONGEST:g}")
+        least, largest = STRENGTHS
+        if not least <= self.strength <= largest:
+            raise OptionError(f"strength {self.strength:g}: must lie between 0 and {largest:g}")
