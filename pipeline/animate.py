@@ -12,6 +12,7 @@ from time import perf_counter
 
 import numpy as np
 
+from pipeline.attention import Attention
 from pipeline.drawing import Drawing, check_drawing
 from pipeline.expected import expected_frames
 from pipeline.followed import followed_shares
@@ -30,7 +31,7 @@ from stages.frame import Frame
 from stages.media import Decoder, FrameRange, MediaInfo, open_decoder
 from stages.snapshot import Snapshot
 from stages.triangulate import Triangulator
-from stages.weights import EvenWeights, WeightMap, open_weights
+from stages.weights import WeightMap
 from warp_kernels.device import Device
 from warp_kernels.errors import OptionError
 
@@ -154,12 +155,14 @@ def _convert(job: Job, progress: Progress, *, draws: bool) -> Animated:
         if draws:
             check_drawing(job, info)
         device = Device(job.device, job.threads)
-        weights = open_weights(job.weights, (info.width, info.height), job.frame_range)
-        triangulator = triangulator_of(job, (info.width, info.height), device)
+        attention = Attention(job.foci, info, job.frame_range.step)
+        size = (info.width, info.height)
+        maps = [WeightMap(str(m.file), size, job.frame_range, m.strength) for m in job.maps]
+        triangulator = triangulator_of(job, size, device)
         drawing = Drawing(job, info, device) if draws else None
         tally = _Tally(progress, expected_frames(job.frame_range, info))
         notes = [] if past is None else past.notes
-        found = _open_steps(decoder, weights, job, past, notes)
+        found = _open_steps(decoder, attention, maps, job, past, notes)
         with device, open_track(job, info, past) as track:
             writer = Behind(_Writer(track, drawing), SOLVED_BEHIND)
             with drawing or nullcontext(), closing(found), writer:
@@ -171,9 +174,10 @@ def _convert(job: Job, progress: Progress, *, draws: bool) -> Animated:
             if track is not None:
                 track.finish()
     made = [] if drawing is None else drawing.notes
-    warnings = (*decoder.warnings, *weights.warnings)
-    told = [*device.notes, *decoder.notes, *weights.notes]
-    return tally.result(begun, warnings, [*told, *notes, *made])
+    warnings = [*decoder.warnings, *(text for one in maps for text in one.warnings)]
+    told = [*device.notes, *decoder.notes, *notes, *attention.notes]
+    told += [note for one in maps for note in one.notes]
+    return tally.result(begun, warnings, [*told, *made])
 
 
 def triangulator_of(job: Job, size: tuple[int, int], device: Device) -> Triangulator:
@@ -184,43 +188,51 @@ def triangulator_of(job: Job, size: tuple[int, int], device: Device) -> Triangul
         size: Width and height of the source, upright [px].
         device: Where kernels run.
     """
-    return Triangulator(device, size, job.triangulate, job.fitted, weighted=job.weights is not None)
+    return Triangulator(device, size, job.triangulate, job.fitted)
 
 
 def _open_steps(
     decoder: Decoder,
-    weights: EvenWeights | WeightMap,
+    attention: Attention,
+    maps: Iterable[WeightMap],
     job: Job,
     past: Past | None,
     notes: list[str],
 ) -> Generator[Step, None, None]:
     """Decode and prepare frames ahead of the solution."""
     reached = None if past is None else past.reached
-    return ahead(prepared(decoder, decoder.info, weights, job, reached, notes), DECODED_AHEAD)
+    found = prepared(decoder, decoder.info, attention, maps, job, reached, notes)
+    return ahead(found, DECODED_AHEAD)
 
 
 def prepared(
     frames: Iterable[Frame],
     info: MediaInfo,
-    weights: EvenWeights | WeightMap,
+    attention: Attention,
+    maps: Iterable[WeightMap],
     job: Job,
     reached: Reached | None,
     notes: list[str],
 ) -> Iterator[Step]:
-    """Find cuts, estimate motion and weigh: all that frames go through before they are solved.
+    """Find cuts, weigh and estimate motion: all that frames go through before they are solved.
 
     Args:
         frames: The frames of the range and around it.
         info: Their source.
-        weights: Those of the job.
+        attention: Weighs them by what `--focus` names.
+        maps: Weigh them by pictures.
         job: Says what is wanted.
         reached: Where an earlier run ended, or None.
         notes: Receives what the user should know, one sentence each.
     """
-    return _weighed(steps(with_shots(frames, job.cuts), info, job, reached, notes), weights)
+    shot_frames = attention.beside(with_shots(frames, job.cuts))
+    found = steps(shot_frames, info, job, reached, notes)
+    for weights in maps:
+        found = _weighed(found, weights)
+    return found
 
 
-def _weighed(found: Iterable[Step], weights: EvenWeights | WeightMap) -> Iterator[Step]:
+def _weighed(found: Iterable[Step], weights: WeightMap) -> Iterator[Step]:
     """Steps whose frames have their weights; frames around the range need none."""
     waiting: deque[Step] = deque()
 
@@ -252,7 +264,7 @@ def solved_frames(
         if snapshot is None or step.passage is None:
             rng = np.random.default_rng([job.seed, step.frame.index])
             snapshot = triangulator.first(step.frame, job.layout, rng)
-        elif step.passage.is_still and job.weights is None:
+        elif step.repeats and not job.maps:
             snapshot = snapshot.again(step.frame)
         else:
             carried = advect(snapshot.mesh, step.passage)
@@ -281,12 +293,10 @@ def _fitted(
         yield from track.snapshots(rows)
         return
     around = FrameRange(rows[0].frame, rows[-1].frame, track.header.frame_range.step)
-    weights = open_weights(job.weights, (info.width, info.height), around)
     triangulator = triangulator_of(job, (info.width, info.height), device)
     wanted = {row.frame for row in rows}
     with open_decoder(job.source, around, read=job.read) as decoder:
-        frames = (frame for frame in decoder if frame.index in wanted)
-        for frame in weights.beside(frames):
+        for frame in (frame for frame in decoder if frame.index in wanted):
             yield triangulator.fit(frame, track.snapshot(frame.index).mesh)
 
 

@@ -10,6 +10,7 @@ from pipeline.job import Job
 from pipeline.member_spec import parse_member, parse_region
 from pipeline.output_name import output_in
 from stages.flows import FLOWS
+from stages.focus import FOCI
 from stages.layouts import LAYOUTS
 from stages.media import FrameRange, parse_time
 from warp_kernels.errors import OptionError
@@ -37,6 +38,8 @@ def build_job(given: Mapping[str, Any]) -> Job:
     for name, registry in (("layout", LAYOUTS), ("flow", FLOWS)):
         if name in given:
             values[name] = parse_member(f"--{name}", given[name], registry)
+    foci = given.get("focus", ())
+    values["focus"] = tuple(parse_member("--focus", spec, FOCI) for spec in foci)
     specs = given.get("styles", ())
     values["styles"] = tuple(parse_member("--style", spec, STYLES) for spec in specs)
     regions = given.get("regions", ())

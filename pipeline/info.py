@@ -7,6 +7,7 @@ from pathlib import Path
 from pipeline.plain_values import to_plain
 from pipeline.track import TrackReader, is_track
 from pipeline.track.schema import FORMAT
+from stages.focus import spelled
 from stages.media import MediaInfo, probe
 
 MOST_SHOTS = 12
@@ -59,6 +60,7 @@ def _facts(track: TrackReader) -> dict[str, object]:
         "source": to_plain(header.source),
         "info": header.info.as_dict(),
         "options": dict(header.options),
+        "focus": spelled(header.job.foci),
         "frames": [dataclasses.asdict(row) for row in track.rows],
     }
 
@@ -78,6 +80,7 @@ def _track_rows(track: TrackReader) -> list[tuple[str, str]]:
         ("frames", ends),
         ("shots", f"{len(shots)}, from frames {starts}" if shots else "none"),
         ("colours", header.model.name),
+        ("focus", spelled(header.job.foci)),
     ]
     if rows:
         counts = [row.triangle_count for row in rows]

@@ -17,6 +17,8 @@ from pathlib import Path
 
 from stages.flows import Flow
 from stages.flows.dis import Dis
+from stages.focus import Focus, resolved
+from stages.focus.picture import Picture
 from stages.layouts import Layout
 from stages.layouts.importance import Importance
 from stages.media import EncodeOptions, FrameRange, ReadOptions
@@ -90,6 +92,17 @@ class Job:
         },
     )
     """Where errors count more: a still for all frames, or a clip with a picture for each."""
+    focus: tuple[Focus, ...] = field(
+        default=(),
+        metadata={
+            "help": "where errors count more, repeatable, what several add is summed: faces, "
+            "saliency, motion, center, picture:FILE (as --weights), none for nowhere, auto for "
+            "faces where there are any (default: auto)",
+            "registry": "stages.focus:FOCI",
+            "group": "triangles",
+        },
+    )
+    """Where errors count more; empty for `auto`, or for nothing beside `weights`."""
     triangulate: TriangulateOptions = field(default_factory=TriangulateOptions)
     """How one picture becomes triangles."""
     styles: tuple[Style, ...] = field(
@@ -211,8 +224,19 @@ class Job:
             raise OptionError(
                 f"--smooth {self.smooth:g}: must lie between 0 (off) and {MAX_SMOOTH}"
             )
+        resolved(self.focus, self.weights)
         if not 1 <= self.jobs <= MAX_THREADS:
             raise OptionError(f"--jobs {self.jobs}: must lie between 1 and {MAX_THREADS}")
+
+    @property
+    def foci(self) -> tuple[Focus, ...]:
+        """Where errors count more: the members that are at work, `weights` among them."""
+        return resolved(self.focus, self.weights)
+
+    @property
+    def maps(self) -> tuple[Picture, ...]:
+        """The members of `foci` that are pictures of the user's."""
+        return tuple(member for member in self.foci if isinstance(member, Picture))
 
     @property
     def shown_styles(self) -> tuple[Style, ...]:

@@ -10,6 +10,9 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from pathlib import Path
 
+import numpy as np
+
+from pipeline.attention import reach_of
 from pipeline.job import Job
 from pipeline.shots import AHEAD, ShotFrame, read_cuts
 from stages.flows.passage import Passage
@@ -43,6 +46,8 @@ class Step:
     """What leads here from the frame before, or None where a mesh starts anew."""
     shot: int
     """Number of the frame with which its shot begins."""
+    repeats: bool = False
+    """Whether picture and weights are those of the frame before."""
 
 
 def open_around(job: Job, reached: Reached | None) -> Decoder:
@@ -57,10 +62,17 @@ def open_around(job: Job, reached: Reached | None) -> Decoder:
         MediaError: If the source cannot be read.
     """
     wanted = job.frame_range
-    if reached is not None and reached.frame >= wanted.first:
+    before, after = reach_of(job.foci)
+    if reached is not None and reached.frame >= wanted.first - before * wanted.step:
         last = None if wanted.last is None else max(wanted.last, reached.frame)
-        wanted = replace(wanted, first=reached.frame, last=last)
-    return open_decoder(job.source, wanted, margin=(BEFORE, AHEAD), read=job.read)
+        # what its weights depend on is decoded again as well, but only then: a range that begins
+        # inside a shot starts anew there
+        first = min(wanted.first, reached.frame) if before else reached.frame
+        back = wanted.step * min(before, first // wanted.step)
+        wanted = replace(wanted, first=first - back, last=last)
+        if back:
+            wanted = replace(wanted, start_time=None)
+    return open_decoder(job.source, wanted, margin=(BEFORE, AHEAD + after), read=job.read)
 
 
 def steps(
@@ -95,9 +107,17 @@ def steps(
             passage: Passage | None = None
             if earlier is not None and shot != frame.index and not job.independent:
                 passage = Passage.between(job.flow, earlier, later)
-            yield Step(frame, passage, shot)
+            yield Step(frame, passage, shot, _repeats(passage, before, frame))
             last = frame.index
         before, earlier = frame, later
+
+
+def _repeats(passage: Passage | None, before: Frame | None, frame: Frame) -> bool:
+    """Whether a frame looks and weighs as the one before."""
+    if passage is None or before is None or not passage.is_still:
+        return False
+    one, other = before.weights, frame.weights
+    return one is other or (one is not None and other is not None and np.array_equal(one, other))
 
 
 def holds(wanted: FrameRange, frame: Frame, info: MediaInfo) -> bool:

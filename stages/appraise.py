@@ -8,6 +8,9 @@ from stages.snapshot import colors_at_centres
 from warp_kernels.survey import Survey
 from warp_kernels.workspace import Workspace
 
+LEAST_EMPHASIS = 0.1
+"""Emphasis of triangles that cover hardly a pixel, and least of all."""
+
 
 class Appraiser:
     """Energies and gains of one mesh at a time, over the picture in a workspace.
@@ -43,6 +46,23 @@ class Appraiser:
         self._survey.load_topology(mesh.twins, mesh.triangles.reshape(-1))
         self._measured = mesh
         return self._energies
+
+    def emphasis(self, half_edges: np.ndarray) -> np.ndarray | float:
+        """How much more errors count beside edges of the measured mesh than on the whole.
+
+        Energies grow with the weights of pixels; what only flickers does so as well.
+
+        Returns:
+            1 in the mean over the picture, [N]; 1 where all pixels count alike.
+        """
+        mesh = self._measured
+        if not self._workspace.weighted or mesh is None:
+            return 1.0
+        mean = self.counts.sum() / mesh.areas.sum()
+        weights = np.maximum(self.counts / (mean * mesh.areas), LEAST_EMPHASIS)
+        beside = np.where(mesh.twins[half_edges] >= 0, mesh.twins[half_edges], half_edges)
+        heaviest: np.ndarray = np.maximum(weights[half_edges // 3], weights[beside // 3])
+        return heaviest
 
     def forget(self) -> None:
         """The picture has changed: what was measured is void."""

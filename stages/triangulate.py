@@ -7,17 +7,19 @@ import numpy as np
 from stages.advect import Carried
 from stages.appraise import Appraiser
 from stages.approximate import Approximator
+from stages.bench import Bench
 from stages.blank import color_owners
 from stages.convergence import Convergence
 from stages.frame import Frame
 from stages.layouts import Layout
 from stages.limits import limits_of
 from stages.mesh import Mesh
-from stages.optimize import OptimizeOptions, load_mesh, optimize
+from stages.optimize import OptimizeOptions, load_mesh, optimize, place_mesh
 from stages.quality import FALL, Trial, smallest_that_reaches
 from stages.refine import RefineOptions
 from stages.snapshot import Snapshot
 from stages.spaces import SPACES
+from stages.springs import springs_of
 from stages.topology import TOPOLOGIES, Goal
 from stages.topology.goal import SLIVER_HEIGHT
 from stages.unrest import Unrest
@@ -119,7 +121,10 @@ class Triangulator:
         options: How a picture becomes triangles.
         drawn: The colour model that will be drawn; the snapshots' colours fit it if it has more
             terms than the optimised one. They are fitted in RGB whatever the space of the error.
-        weighted: Whether every frame brings weights.
+
+    Frames without weights and frames with them may follow each other: the memory for weights is
+    taken with the first frame that has some. Weights decide where triangles go; colours are means
+    of all pixels alike, and so are the energies of snapshots.
 
     Raises:
         OptionError: If the frames are too large.
@@ -131,28 +136,41 @@ class Triangulator:
         size: tuple[int, int],
         options: TriangulateOptions,
         drawn: ColorModel | None = None,
-        *,
-        weighted: bool = False,
     ) -> None:
         self._space = SPACES[options.space]()
         self.options = _against(options, self._space.scale)
-        self._workspace = Workspace(device, size, options.model, options.sums, weighted)
+        self._device, self._size = device, size
         self._least = options.refine.least_count(*size)
-        self._appraiser = Appraiser(self._workspace, SLIVER_HEIGHT)
-        self._approximator = Approximator(
-            workspace=self._workspace,
-            topology=TOPOLOGIES[options.topology](),
-            appraiser=self._appraiser,
-            options=self.options.optimize,
-            iterations=options.iterations,
-        )
+        self._even = self._bench(weighted=False)
+        self._weighted: Bench | None = None
+        self._use(self._even)
         self._fitting = self._workspace
         fitted = options.model
         if drawn is not None and drawn.degree > fitted.degree:
             fitted = drawn
         if fitted is not options.model or options.space != "rgb":
-            self._fitting = Workspace(device, size, fitted, weighted=weighted)
+            self._fitting = Workspace(device, size, fitted)
         self._extremes = Extremes(self._fitting)
+
+    def _bench(self, *, weighted: bool) -> Bench:
+        """Make what pictures with weights, or those without, are worked on with."""
+        options = self.options
+        workspace = Workspace(self._device, self._size, options.model, options.sums, weighted)
+        appraiser = Appraiser(workspace, SLIVER_HEIGHT)
+        approximator = Approximator(
+            workspace=workspace,
+            topology=TOPOLOGIES[options.topology](),
+            appraiser=appraiser,
+            options=options.optimize,
+            iterations=options.iterations,
+        )
+        return Bench(workspace, appraiser, approximator)
+
+    def _use(self, bench: Bench) -> None:
+        """Work on this bench from now on."""
+        self._workspace = bench.workspace
+        self._appraiser = bench.appraiser
+        self._approximator = bench.approximator
 
     def first(self, frame: Frame, layout: Layout, rng: np.random.Generator) -> Snapshot:
         """Triangulate a frame from scratch.
@@ -173,12 +191,19 @@ class Triangulator:
             return self._snapshot(frame, attempt(refine.triangles).mesh)
         pixels = frame.pixels.shape[0] * frame.pixels.shape[1]
         mesh = smallest_that_reaches(refine.quality, attempt, least=self._least, pixels=pixels)
-        load_mesh(self._workspace, mesh)
         return self._snapshot(frame, mesh)
 
     def _load(self, frame: Frame) -> None:
-        self._workspace.load_image(self._space.convert(frame.pixels), frame.weights)
-        self._appraiser.forget()
+        """Take in a picture: as it is, and with its weights if it has any."""
+        pixels = self._space.convert(frame.pixels)
+        self._even.load(pixels)
+        bench = self._even
+        if frame.weights is not None:
+            if self._weighted is None:
+                self._weighted = self._bench(weighted=True)
+            bench = self._weighted
+            bench.load(pixels, frame.weights)
+        self._use(bench)
 
     def next(self, frame: Frame, seed: Carried, earlier: Snapshot | None = None) -> Snapshot:
         """Triangulate a frame that continues a shot.
@@ -198,21 +223,28 @@ class Triangulator:
         unrest = self._unrest(frame, seed, earlier)
         if unrest is not None:
             seed = replace(seed, trust=seed.trust * (1.0 - unrest.values))
-        mesh = self._follow(seed.mesh, seed, spring, each)
+        mesh = self._follow(seed.mesh, seed, spring, each, frame.weights)
         if unrest is not None:
             renewing = int(RENEWED * rounds)
-            mesh = self._renew(mesh, seed, unrest, spring, renewing, each)
+            mesh = self._renew(mesh, seed, unrest, frame.weights, spring, renewing, each)
             rounds -= renewing
         goal = self._goal(self._followed_count(mesh), calm=True, unrest=unrest)
         for _ in range(rounds):
             if each and convergence.is_reached(self._workspace.last_energy()):
                 break
             mesh = self._approximator.topology.adapt(mesh, self._appraiser, goal)
-            mesh = self._follow(mesh, seed, spring, each)
+            mesh = self._follow(mesh, seed, spring, each, frame.weights)
         return self._snapshot(frame, self._approximator.within_limits(mesh, goal))
 
     def _renew(
-        self, mesh: Mesh, seed: Carried, unrest: Unrest, spring: float, rounds: int, each: int
+        self,
+        mesh: Mesh,
+        seed: Carried,
+        unrest: Unrest,
+        weights: np.ndarray | None,
+        spring: float,
+        rounds: int,
+        each: int,
     ) -> Mesh:
         """Refine a mesh anew where it boils, and adapt it elsewhere as always.
 
@@ -220,6 +252,7 @@ class Triangulator:
             mesh: What has become of the seed.
             seed: Where the motion took the vertices.
             unrest: Where it boils.
+            weights: As in `_follow`.
             spring: As in `_follow` [code value^2].
             rounds: Looks at the topology.
             each: Iterations after each of them.
@@ -232,7 +265,7 @@ class Triangulator:
             more = renewal.count(number / rounds, boiling) - boiling
             goal = self._goal(count + more, calm=True, unrest=unrest)
             mesh = self._approximator.topology.adapt(mesh, self._appraiser, goal)
-            mesh = self._follow(mesh, seed, spring, each)
+            mesh = self._follow(mesh, seed, spring, each, weights)
         return mesh
 
     def fit(self, frame: Frame, mesh: Mesh) -> Snapshot:
@@ -242,19 +275,18 @@ class Triangulator:
             frame: The frame.
             mesh: What it became before.
         """
-        if self._fitting is self._workspace:
-            self._load(frame)
-            load_mesh(self._workspace, mesh)
+        if self._fitting is self._even.workspace:
+            self._even.load(frame.pixels)
         return self._snapshot(frame, mesh)
 
     def _unrest(self, frame: Frame, seed: Carried, earlier: Snapshot | None) -> Unrest | None:
         """Where the picture boils, if anywhere; told by the colours that snapshots have."""
         if earlier is None:
             return None
-        if self._fitting is self._workspace:
-            return Unrest.between(earlier, seed, self._appraiser.energies(seed.mesh))
-        self._fitting.load_image(frame.pixels, frame.weights)
-        load_mesh(self._fitting, seed.mesh)
+        if self._fitting is self._even.workspace:
+            return Unrest.between(earlier, seed, self._even.appraiser.energies(seed.mesh))
+        self._fitting.load_image(frame.pixels)
+        place_mesh(self._fitting, seed.mesh)
         return Unrest.between(earlier, seed, self._fitting.fit()[1])
 
     def _followed_count(self, mesh: Mesh) -> int:
@@ -268,7 +300,14 @@ class Triangulator:
         drift = min(max(missed ** (1 / FALL), 1 - MOST_DRIFT), 1 + MOST_DRIFT)
         return max(self._least, round(mesh.triangle_count * drift))
 
-    def _follow(self, mesh: Mesh, seed: Carried, spring: float, iterations: int) -> Mesh:
+    def _follow(
+        self,
+        mesh: Mesh,
+        seed: Carried,
+        spring: float,
+        iterations: int,
+        weights: np.ndarray | None,
+    ) -> Mesh:
         """Optimise, with every vertex on a spring to where the motion took it.
 
         Args:
@@ -276,14 +315,9 @@ class Triangulator:
             seed: Where the motion took the vertices.
             spring: Strength of the spring where the motion is certain [code value^2].
             iterations: Number of steps.
+            weights: The picture's, [H, W] uint8, or None.
         """
-        springs = np.zeros((mesh.vertex_count, 3))
-        springs[:, :2] = mesh.vertices
-        old = np.searchsorted(seed.mesh.vertex_ids, mesh.vertex_ids)
-        known = mesh.vertex_ids < seed.mesh.next_vertex_id
-        springs[known, :2] = seed.mesh.vertices[old[known]]
-        springs[known, 2] = spring * seed.trust[old[known]]
-        load_mesh(self._workspace, mesh, springs)
+        load_mesh(self._workspace, mesh, springs_of(mesh, seed, spring, weights))
         return optimize(
             self._workspace,
             mesh,
@@ -301,9 +335,9 @@ class Triangulator:
         return Trial(mesh, self._rmse(mesh))
 
     def _rmse(self, mesh: Mesh) -> float:
-        """Root mean square error per channel, as it is measured [code values of the space]."""
+        """Root mean square error per channel, of all pixels alike [code values of the space]."""
         samples = CHANNELS * mesh.width * mesh.height
-        return float(np.sqrt(2.0 * self._appraiser.energies(mesh).sum() / samples))
+        return float(np.sqrt(2.0 * self._even.appraiser.energies(mesh).sum() / samples))
 
     def _goal(self, count: int, *, calm: bool = False, unrest: Unrest | None = None) -> Goal:
         """What the mesh must be like, with a number of triangles."""
@@ -311,11 +345,11 @@ class Triangulator:
         return Goal(count, refine.error, calm, refine.largest_area, unrest)
 
     def _snapshot(self, frame: Frame, mesh: Mesh) -> Snapshot:
-        """Fit the colours to the mesh that lies in the workspace, just optimised."""
+        """Fit the colours to a mesh that was just optimised, by all pixels alike."""
         fitting = self._fitting
-        if fitting is not self._workspace:
-            fitting.load_image(frame.pixels, frame.weights)
-            load_mesh(fitting, mesh)
+        if fitting is not self._even.workspace:
+            fitting.load_image(frame.pixels)
+        place_mesh(fitting, mesh)
         coefficients, energies, counts = fitting.fit()
         owners = color_owners(mesh, counts)
         limits = None

@@ -1,4 +1,4 @@
-"""Where errors count more: a grey picture, or a clip of them, that lies over the source."""
+"""A user's weights: a grey picture, or a clip of them, that lies over the source."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
@@ -6,7 +6,7 @@ from itertools import chain
 
 import numpy as np
 
-from stages.frame import Frame
+from stages.frame import WHITE, Frame
 from stages.media import Decoder, FrameRange, open_decoder, probe
 from warp_kernels.errors import MediaError, OptionError
 
@@ -19,55 +19,38 @@ BLACK = 0
 """Grey behind transparent parts of a map: nothing was painted there."""
 
 
-def open_weights(
-    path: str | None, size: tuple[int, int], frame_range: FrameRange
-) -> "EvenWeights | WeightMap":
-    """Open a map of weights and check what can be told before the first frame.
+class WeightMap:
+    """Weights of the pixels of a clip, checked as far as can be told before the first frame.
+
+    A white pixel counts fully, a grey one in proportion, and a black one like code value 1, a
+    255th: no triangle is without weight. What the frames weigh already is multiplied by them.
 
     Args:
         path: A still for all frames; numbered stills or a video with a picture for each frame,
-            which belongs to the frame of the same number; None if all pixels count alike.
+            which belongs to the frame of the same number.
         size: Width and height of the source, upright [px].
         frame_range: The frames of the source that are wanted.
+        strength: Exponent of the weights.
 
     Raises:
         MediaError: If the map cannot be read, has another size or is not grey, or if it is a
             still that is black all over.
         OptionError: If a pattern has more than one number field.
     """
-    return EvenWeights() if path is None else WeightMap(path, size, frame_range)
 
-
-class EvenWeights:
-    """No map: every pixel counts alike."""
-
-    notes: tuple[str, ...] = ()
-    """Nothing was chosen."""
-    warnings: tuple[str, ...] = ()
-    """Nothing can be a mistake."""
-
-    def beside(self, frames: Iterable[Frame]) -> Iterable[Frame]:
-        """Give frames back as they are.
-
-        Args:
-            frames: Frames of the source, in order.
-        """
-        return frames
-
-
-class WeightMap:
-    """Weights of the pixels of a clip; made by `open_weights`.
-
-    A white pixel counts fully, a grey one in proportion, and a black one like code value 1, a
-    255th: no triangle is without weight.
-    """
-
-    def __init__(self, path: str, size: tuple[int, int], frame_range: FrameRange) -> None:
-        """Prepare for a source; see `open_weights`."""
-        self.notes = ["the rmse counts errors by --weights; measure counts all pixels alike"]
+    def __init__(
+        self,
+        path: str,
+        size: tuple[int, int],
+        frame_range: FrameRange,
+        strength: float = 1.0,
+    ) -> None:
+        self.notes: list[str] = []
         """Choices that were made, one sentence each."""
         self.warnings: list[str] = []
         """What may be a mistake, one sentence each; complete once the last frame was read."""
+        greys = np.maximum(np.arange(WHITE + 1), 1)
+        self._levels = np.maximum(np.rint(WHITE * (greys / WHITE) ** strength), 1).astype(np.uint8)
         self._path = path
         self._range = replace(frame_range, start_time=None, end_time=None)
         self._last: int | None = None
@@ -87,7 +70,8 @@ class WeightMap:
         """
         if self._still is None:
             return self._moving(iter(frames))
-        return (replace(frame, weights=self._still) for frame in frames)
+        still = self._still
+        return (_multiplied(frame, still) for frame in frames)
 
     def _moving(self, frames: Iterator[Frame]) -> Iterator[Frame]:
         first = next(frames, None)
@@ -97,7 +81,7 @@ class WeightMap:
         wanted = replace(self._range, first=first.index)
         with open_decoder(self._path, wanted, paper=BLACK) as decoder:
             for frame in chain([first], frames):
-                yield replace(frame, weights=self._weights_at(frame.index, decoder))
+                yield _multiplied(frame, self._weights_at(frame.index, decoder))
             self._tell(decoder)
         if not self._lit:
             self.warnings.append(f"{self._path}: black in every frame; paint white what counts")
@@ -115,7 +99,8 @@ class WeightMap:
         self._last = index
         grey = self._grey_of(found)
         self._lit = self._lit or bool(grey.any())
-        return np.maximum(grey, 1)
+        weights: np.ndarray = self._levels[grey]
+        return weights
 
     def _missing(self, index: int, decoder: Decoder) -> MediaError:
         end = "" if self._last is None else f"; the last that it has is for frame {self._last}"
@@ -137,7 +122,8 @@ class WeightMap:
             raise MediaError(
                 self._path, "the weights are black all over", "paint white what counts most"
             )
-        return np.maximum(grey, 1)
+        weights: np.ndarray = self._levels[grey]
+        return weights
 
     def _grey_of(self, frame: Frame) -> np.ndarray:
         """Grey of a frame of the map, [H, W] uint8."""
@@ -169,3 +155,11 @@ class WeightMap:
         new = (note for note in decoder.notes if note not in self._info.notes)
         self.notes += [f"weights: {note}" for note in new]
         self.warnings += [f"weights: {warning}" for warning in decoder.warnings]
+
+
+def _multiplied(frame: Frame, weights: np.ndarray) -> Frame:
+    """A frame whose weights are multiplied by others, white counting once."""
+    if frame.weights is not None:
+        product = frame.weights.astype(np.uint16) * weights
+        weights = np.maximum((product + WHITE // 2) // WHITE, 1).astype(np.uint8)
+    return replace(frame, weights=weights)

@@ -18,7 +18,15 @@ LEVELS = {"warp_kernels": 0, "stages": 1, "pipeline": 2, "trimotion": 3}
 IMPORT_HOMES = {
     "warp": ("warp_kernels/",),
     "scipy": ("stages/", "pipeline/"),
-    "cv2": ("stages/flows", "stages/layouts", "stages/metrics", "stages/sheet", "stages/spaces"),
+    # in the focus it runs the network that finds faces, and scales pictures and maps for it
+    "cv2": (
+        "stages/flows",
+        "stages/focus",
+        "stages/layouts",
+        "stages/metrics",
+        "stages/sheet",
+        "stages/spaces",
+    ),
     "av": ("stages/media", "stages/decode", "stages/encode"),
     "argparse": ("pipeline/",),
     "sqlite3": ("pipeline/",),

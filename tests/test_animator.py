@@ -105,7 +105,7 @@ def test_frames_come_as_late_as_promised(frames: list[np.ndarray]) -> None:
 
     def counts(**options: Any) -> list[int]:
         """How many come back from each call."""
-        with trimotion.Animator((96, 64), **QUICK, **options) as animator:
+        with trimotion.Animator((96, 64), focus="none", **QUICK, **options) as animator:
             fed = [len(animator.feed(pixels, new_shot=n == 6)) for n, pixels in enumerate(frames)]
             return [*fed, len(animator.finish())]
 

@@ -21,7 +21,7 @@ RUNTIME_DEPENDENCIES = {
     "av",
     "tqdm",
 }
-REGISTRIES = ("COLOR_MODELS", "LAYOUTS", "FLOWS", "SPACES", "STYLES", "TOPOLOGIES")
+REGISTRIES = ("COLOR_MODELS", "LAYOUTS", "FLOWS", "FOCI", "SPACES", "STYLES", "TOPOLOGIES")
 TEXT_SUFFIXES = {".py", ".md", ".toml", ".txt", ".yml", ".yaml", ".cfg", ".ini", ".json", ".sh", ""}
 
 

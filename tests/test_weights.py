@@ -16,7 +16,7 @@ from stages.frame import Frame
 from stages.media import FrameRange, open_decoder
 from stages.refine import RefineOptions
 from stages.triangulate import TriangulateOptions
-from stages.weights import open_weights
+from stages.weights import WeightMap
 from tests import media_samples as samples
 from tests.kernel_samples import frame_of
 from warp_kernels.errors import MediaError
@@ -71,13 +71,13 @@ def source_frames(*numbers: int) -> list[Frame]:
 
 def read_still(path: Path) -> np.ndarray:
     """The weights that a still gives, [H, W] uint8."""
-    (frame,) = open_weights(str(path), SIZE, FrameRange()).beside(source_frames(0))
+    (frame,) = WeightMap(str(path), SIZE, FrameRange()).beside(source_frames(0))
     return frame.weights
 
 
 def read_numbers(path: Path, frame_range: FrameRange, *numbers: int) -> list[int]:
     """Weight of the first pixel for each frame of the source."""
-    frames = open_weights(str(path), SIZE, frame_range).beside(source_frames(*numbers))
+    frames = WeightMap(str(path), SIZE, frame_range).beside(source_frames(*numbers))
     return [int(frame.weights[0, 0]) for frame in frames]
 
 
@@ -98,7 +98,7 @@ def test_still_gives_its_greys_to_every_frame(tmp_path: Path) -> None:
     """Grey is weight, black is one, and all frames share one array."""
     path = samples.write_still(tmp_path / "w.png", ramp())
     np.testing.assert_array_equal(read_still(path), np.maximum(ramp()[..., 0], 1))
-    frames = list(open_weights(str(path), SIZE, FrameRange()).beside(source_frames(3, 4, 9)))
+    frames = list(WeightMap(str(path), SIZE, FrameRange()).beside(source_frames(3, 4, 9)))
     assert [frame.index for frame in frames] == [3, 4, 9]
     assert frames[0].weights is frames[2].weights
     assert frames[0].weights.min() == 1
@@ -124,7 +124,7 @@ def test_transparent_parts_count_least(tmp_path: Path) -> None:
     pixels = np.full((SIZE[1], SIZE[0], 4), 255, np.uint8)
     pixels[:, 10:20, 3], pixels[:, 20:, 3] = 128, 0
     path = samples.write_still(tmp_path / "w.png", pixels, "rgba")
-    weights = open_weights(str(path), SIZE, FrameRange())
+    weights = WeightMap(str(path), SIZE, FrameRange())
     (frame,) = weights.beside(source_frames(0))
     assert frame.weights[0, [0, 15, 40]].tolist() == [255, 128, 1]
     assert any("over black" in note for note in weights.notes)
@@ -144,7 +144,7 @@ def test_compressed_grey_is_grey(tmp_path: Path) -> None:
     """Strong compression of a grey clip, stored as brightness and colour."""
     pictures = [np.roll(ramp(), 5 * n, axis=1) for n in range(3)]
     path = samples.write_video(tmp_path / "w.mp4", pictures, options={"crf": "35"})
-    frames = list(open_weights(str(path), SIZE, FrameRange()).beside(source_frames(0, 1, 2)))
+    frames = list(WeightMap(str(path), SIZE, FrameRange()).beside(source_frames(0, 1, 2)))
     for frame, picture in zip(frames, pictures, strict=True):
         assert np.abs(frame.weights.astype(int) - picture[..., 0]).mean() < 12
 
@@ -165,7 +165,7 @@ def test_size_is_that_of_the_upright_picture(tmp_path: Path) -> None:
     """Both sizes are named; a map that lies on its side stands up first."""
     path = write_levels(tmp_path / "w.mkv", [1, 2], (40, 32))
     with pytest.raises(MediaError, match=r"40x32 and the source is 48x32; scale the map to 48x32"):
-        open_weights(str(path), SIZE, FrameRange())
+        WeightMap(str(path), SIZE, FrameRange())
     pictures = [level(50, SIZE[::-1])] * 2
     lying = samples.write_video(tmp_path / "w.mp4", pictures, rotation=90)
     assert read_numbers(lying, FrameRange(), 0, 1) == pytest.approx([50, 50], abs=3)
@@ -177,7 +177,7 @@ def test_black_is_refused_or_told(tmp_path: Path) -> None:
         read_still(samples.write_still(tmp_path / "w.png", level(0)))
     for values, told in (([0, 0, 7], 0), ([0, 0, 0], 1)):
         path = write_levels(tmp_path / "w.mkv", values)
-        weights = open_weights(str(path), SIZE, FrameRange())
+        weights = WeightMap(str(path), SIZE, FrameRange())
         assert len(list(weights.beside(source_frames(0, 1, 2)))) == 3
         assert len(weights.warnings) == told
 
@@ -254,8 +254,8 @@ def test_mistakes_are_one_line(
     assert sorted(tmp_path.rglob("*")) == before
 
 
-def test_every_workspace_gets_the_weights_of_its_frame(workspaces, tmp_path: Path) -> None:
-    """The one that is optimised and the one that fits the drawn colours, frame by frame."""
+def test_weights_go_where_vertices_move(workspaces, tmp_path: Path) -> None:
+    """Frame by frame to the workspace that is optimised; colours are fitted without them."""
     source = samples.write_video(tmp_path / "in.mp4", [samples.picture(*SIZE, n) for n in range(6)])
     job = Job(
         source,
@@ -265,23 +265,32 @@ def test_every_workspace_gets_the_weights_of_its_frame(workspaces, tmp_path: Pat
         styles=(STYLES["gradient"](),),
         weights=str(write_stills(tmp_path, range(6))),
     )
-    result = animate(job, Progress())
-    assert result.frames == 3
-    assert any("--weights" in note for note in result.notes)
-    assert len(workspaces) == 2
-    for workspace in workspaces:
-        assert workspace.weighted
-        assert [int(weights[0, 0]) for weights in workspace.loaded] == [11, 31, 51]
+    assert animate(job, Progress()).frames == 3
+    even, fitting, weighted = workspaces
+    assert [w.weighted for w in workspaces] == [False, False, True]
+    assert even.loaded == fitting.loaded == [None, None, None]
+    assert [int(weights[0, 0]) for weights in weighted.loaded] == [11, 31, 51]
 
 
 def test_no_map_asks_for_no_weights(workspaces, tmp_path: Path) -> None:
-    """Without the option everything is as it was."""
+    """Without the option, and without a face, everything is as it was."""
     source = samples.write_still(tmp_path / "in.png", samples.picture(*SIZE))
-    result = animate(Job(source, tmp_path / "out.png", triangulate=QUICK), Progress())
-    assert not any("weights" in note for note in result.notes)
+    animate(Job(source, tmp_path / "out.png", triangulate=QUICK), Progress())
     (workspace,) = workspaces
     assert not workspace.weighted
     assert workspace.loaded == [None]
+
+
+def test_told_error_is_that_of_all_pixels(tmp_path: Path) -> None:
+    """With a map as without: the rmse of the drawn picture, before it is rounded and smoothed."""
+    picture = texture()
+    source = samples.write_still(tmp_path / "in.png", picture)
+    half = np.full_like(picture, 10)
+    half[:, :80] = 255
+    weights = str(samples.write_still(tmp_path / "map.png", half))
+    job = Job(source, tmp_path / "out.png", triangulate=QUICK, weights=weights)
+    told = animate(job, Progress()).mean_rmse
+    assert told == pytest.approx(np.sqrt((halves_rmse(picture, job.output) ** 2).mean()), rel=0.1)
 
 
 @pytest.mark.parametrize("wrong", [np.ones((3, 3), np.uint8), np.ones((32, 48), np.float32)])

@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from pipeline.animate import Solved, prepared, solved_frames
+from pipeline.attention import Attention
 from pipeline.build_job import build_job
 from pipeline.job import Job
 from pipeline.library.given import given_values
@@ -11,10 +12,7 @@ from pipeline.library.triangulation import Origin, Triangulation
 from stages.frame import Frame
 from stages.media import MediaInfo
 from stages.triangulate import Triangulator
-from stages.weights import open_weights
-
-GIVEN = "(an array)"
-"""Stands for the name of a map of weights that has none."""
+from stages.weights import WeightMap
 
 
 def job_without_files(function: str, options: Mapping[str, Any]) -> Job:
@@ -44,9 +42,10 @@ def solved_arrays(
     Raises:
         MediaError: If a file that an option names cannot be read.
     """
-    path = None if job.weights == GIVEN else job.weights
-    weights = open_weights(path, (info.width, info.height), job.frame_range)
-    found = prepared(frames, info, weights, job, None, [])
+    size = (info.width, info.height)
+    attention = Attention(job.foci, info, 1)
+    maps = [WeightMap(str(m.file), size, job.frame_range, m.strength) for m in job.maps]
+    found = prepared(frames, info, attention, maps, job, None, [])
     return solved_frames(found, triangulator, job, None)
 
 

@@ -1,7 +1,6 @@
 """Draw the triangles of one frame by themselves."""
 
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -49,6 +48,5 @@ def drawn(snapshot: Snapshot, frame: Frame | None, values: Mapping[str, Any]) ->
 
 def _fitted(snapshot: Snapshot, frame: Frame, job: Job, device: Device) -> Snapshot:
     """The same triangles in the colours that a look needs."""
-    weighed = replace(job, weights=None if frame.weights is None else "given")
-    triangulator = triangulator_of(weighed, (frame.width, frame.height), device)
+    triangulator = triangulator_of(job, (frame.width, frame.height), device)
     return triangulator.fit(frame, snapshot.mesh)

@@ -42,6 +42,7 @@ class ShapeKeywords(DeviceKeywords, total=False):
 
     seed: int
     layout: str
+    focus: str | Sequence[str]
     color: str
     iterations: int
     topology: str

@@ -4,7 +4,7 @@ from dataclasses import replace
 from typing import Any, Unpack
 
 from pipeline.animate import triangulator_of
-from pipeline.library.arrays import GIVEN, job_without_files, solved_arrays, told
+from pipeline.library.arrays import job_without_files, solved_arrays, told
 from pipeline.library.device import opened_device
 from pipeline.library.keywords import PictureKeywords
 from pipeline.library.pixels import frame_of, info_of, weights_of
@@ -32,7 +32,8 @@ def triangulate(pixels: Any, **options: Unpack[PictureKeywords]) -> Triangulatio
     named: Any = dict(options)
     if hasattr(named.get("weights"), "__array__"):
         frame = replace(frame, weights=weights_of(named["weights"], size))
-        named["weights"] = GIVEN
+        del named["weights"]
+        named.setdefault("focus", "none")
     job = job_without_files("triangulate", named)
     with opened_device(job.device, job.threads) as device:
         triangulator = triangulator_of(job, size, device)

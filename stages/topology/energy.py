@@ -149,10 +149,11 @@ class Energy:
         """What splits of edges must save for a vertex to come from elsewhere, shape [N]."""
         if not goal.calm:
             return np.zeros(len(edges))
-        floor = self.calm_floor * appraiser.energies(mesh).mean()
-        if goal.unrest is None:
-            return np.full(len(edges), floor)
-        return floor * beside_edges(mesh, goal.unrest.calm(mesh), edges)
+        floors = np.full(len(edges), self.calm_floor * appraiser.energies(mesh).mean())
+        floors *= appraiser.emphasis(edges)
+        if goal.unrest is not None:
+            floors *= beside_edges(mesh, goal.unrest.calm(mesh), edges)
+        return floors
 
     def _worth(self, mesh: Mesh, goal: Goal) -> np.ndarray | None:
         """How firmly vertices are held on to, beside those where it is calm, shape [V]."""

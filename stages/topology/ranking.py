@@ -30,14 +30,14 @@ def ranked_flips(
         mesh: The measured mesh.
         appraiser: Has measured it.
         least_share: Smallest gain, as a part of the energy of the edge's two triangles.
-        floor: Smallest gain [code value^2 px].
+        floor: Smallest gain, where errors count as on the whole [code value^2 px].
         calm: How much of both counts at each triangle [0..1], [T]; None for all of it.
     """
     energies = appraiser.energies(mesh)
     edges = mesh.edge_half_edges
     gains = appraiser.flip_gains(edges)
     before = energies[edges // 3] + energies[np.maximum(mesh.twins[edges], 0) // 3]
-    least = np.maximum(least_share * before, floor)
+    least = np.maximum(least_share * before, floor * appraiser.emphasis(edges))
     if calm is not None:
         least *= beside_edges(mesh, calm, edges)
     wanted = gains > np.maximum(least, LEAST_GAIN)

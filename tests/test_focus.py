@@ -1,0 +1,487 @@
+"""Where errors count more: what is found, what it changes, and that nothing else changes."""
+
+import json
+import sqlite3
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from itertools import pairwise
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+
+from pipeline.animate import animate
+from pipeline.attention import UNIT, WINDOW, Attention, reach_of
+from pipeline.cli import main
+from pipeline.face_tracks import CARRIED, MEMORY, SPACING, FaceTracks
+from pipeline.job import Job
+from pipeline.member_spec import parse_member
+from pipeline.parts import solve_in_parts
+from pipeline.plain_values import from_plain, to_plain
+from pipeline.progress import Progress
+from pipeline.shots import ShotFrame
+from pipeline.track import TrackReader
+from stages.focus import FOCI, Glance, resolved, spelled
+from stages.focus.blazeface import MODEL, BlazeFace
+from stages.focus.center import Center
+from stages.focus.face import Face, emphasis
+from stages.focus.faces import Auto, Faces
+from stages.focus.none import NoFocus
+from stages.focus.picture import Picture
+from stages.focus.search import OPENING, SURE, FaceSearch
+from stages.frame import Frame
+from stages.layouts.importance import Importance
+from stages.media import open_decoder, probe
+from stages.triangulate import Triangulator
+from tests import media_samples as samples
+from tests.kernel_samples import frame_of
+from tests.tracks import QUICK, rows_of, solve_to
+from warp_kernels.device import Device
+from warp_kernels.errors import OptionError
+
+PORTRAIT = Path(__file__).parents[1] / "sample_videos" / "astronaut.jpg"
+MIDDLE, EYES, MOUTH, SIZE = (227, 122), ((205, 104), (248, 104)), (226, 150), 100
+"""Where the portrait's face is [px], read off the picture."""
+CUT, COUNT = 11, 23
+"""First frame of the second shot of the clip, and number of frames."""
+
+
+@pytest.fixture(scope="module")
+def portrait() -> np.ndarray:
+    """The portrait, [512, 512, 3] uint8."""
+    with open_decoder(PORTRAIT) as decoder:
+        return next(decoder).pixels
+
+
+@pytest.fixture(scope="module")
+def search() -> FaceSearch:
+    """A search, loaded once."""
+    return FaceSearch()
+
+
+def seen_from(
+    portrait: np.ndarray,
+    size: tuple[int, int],
+    middle: tuple[float, float],
+    face: float,
+    turn: float = 0.0,
+    *,
+    mirrored: bool = False,
+) -> np.ndarray:
+    """The portrait as another camera sees it: its face as large, where and as turned as wanted."""
+    copy = portrait[:, ::-1] if mirrored else portrait
+    from_middle = (512 - MIDDLE[0] if mirrored else MIDDLE[0], MIDDLE[1])
+    matrix = cv2.getRotationMatrix2D(from_middle, turn, face / SIZE)
+    matrix[:, 2] += np.subtract(middle, from_middle)
+    blurred = cv2.GaussianBlur(copy, (0, 0), max(0.01, 0.4 * SIZE / face))
+    return cv2.warpAffine(blurred, matrix, size, borderMode=cv2.BORDER_REFLECT)
+
+
+@pytest.fixture(scope="module")
+def clip(portrait: np.ndarray, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A face that wanders, a cut, and another, smaller and mirrored."""
+    size = (128, 96)
+    first = [seen_from(portrait, size, (50 + n, 45), 45, n) for n in range(CUT)]
+    places = [(84 - 2 * n, 56) for n in range(COUNT - CUT)]
+    second = [seen_from(portrait, size, place, 34, mirrored=True) for place in places]
+    for picture in second:  # another light, so that there is a cut
+        picture[:] = picture // 3
+    path = tmp_path_factory.mktemp("focus") / "face.mp4"
+    return samples.write_video(path, first + second, options={"crf": "12"})
+
+
+@pytest.fixture(scope="module")
+def whole(clip: Path) -> Path:
+    """The track of the whole clip."""
+    track = clip.with_name("whole.mtrk")
+    solve_to(track, clip)
+    return track
+
+
+def shot_frames(pictures: list[np.ndarray], first: int = 0) -> list[ShotFrame]:
+    """Frames of one shot."""
+    return [
+        ShotFrame(frame_of(picture, first + n), opens_shot=n == 0)
+        for n, picture in enumerate(pictures)
+    ]
+
+
+def weights_of(pictures: list[np.ndarray], *members: object, first: int = 0) -> list[np.ndarray]:
+    """Weights of the frames of one shot, [N, H, W] in units of a pixel that counts once."""
+    height, width = pictures[0].shape[:2]
+    info = replace(probe(PORTRAIT), kind="video", width=width, height=height)
+    told = Attention(members or (Faces(),), info, 1).beside(shot_frames(pictures, first))
+    even = np.full((height, width), UNIT, np.uint8)
+    weights = [even if t.frame.weights is None else t.frame.weights for t in told]
+    return [one.astype(float) / UNIT for one in weights]
+
+
+@pytest.mark.parametrize("name", FOCI)
+def test_members_are_named_stored_and_told(name: str, tmp_path: Path) -> None:
+    """Every member is made of its name, survives a track, is spelled as it was given."""
+    spec = {"none": "none", "picture": f"picture:{PORTRAIT},strength=0.5"}
+    text = spec.get(name, f"{name}:strength=0.5")
+    member = parse_member("--focus", text, FOCI)
+    assert from_plain(type(member), to_plain(member)) == member
+    job = Job(PORTRAIT, tmp_path / "o.png", focus=(member,))
+    assert from_plain(Job, to_plain(job)).focus == (member,)
+    assert spelled(job.foci).startswith(name)
+    if isinstance(member, Glance):
+        for picture in (samples.picture(48, 32), np.zeros((1, 1, 3), np.uint8)):
+            seen = member.glance(frame_of(picture[::-1].copy(), 0), frame_of(picture, 1))
+            assert seen.dtype == np.float32
+            assert np.isfinite(seen).all()
+            assert 0 <= seen.min() <= seen.max() <= 1
+
+
+def test_who_is_at_work() -> None:
+    """Nobody named: auto, but for nothing beside a map; none and strength 0 are nobody."""
+    assert resolved((), None) == (Auto(),)
+    assert resolved((), "m.png") == (Picture("m.png"),)
+    assert resolved((Center(),), "m.png") == (Center(), Picture("m.png"))
+    assert resolved((NoFocus(),), None) == resolved((Faces(strength=0.0),), None) == ()
+    with pytest.raises(OptionError, match="none: goes with no other"):
+        resolved((NoFocus(), Faces()), None)
+
+
+@pytest.mark.parametrize(
+    ("spec", "word"),
+    [
+        ("nose", "choose from auto, none"),
+        ("faces:strength=9", "strength 9: must lie between 0 and 4"),
+        ("faces:strength=x", "write a number"),
+        ("faces:age=3", "age"),
+        ("none:strength=1", "strength"),
+        ("center:size=0", "size 0: must lie"),
+        ("motion:speed=1", "speed 1: must lie"),
+        ("picture", "write picture:FILE"),
+        ("picture:there.is.none.png", "there.is.none.png"),
+    ],
+)
+def test_mistakes_are_one_line(spec: str, word: str, tmp_path: Path, capsys) -> None:
+    """What is wrong and what to do, and nothing written."""
+    output = tmp_path / "o.png"
+    assert main(["animate", str(PORTRAIT), "-o", str(output), "--focus", spec]) in (2, 3)
+    error = capsys.readouterr().err
+    assert error.startswith("trimotion: error: ")
+    assert error.count("\n") == 1
+    assert word in error
+    assert not output.exists()
+
+
+def test_missing_network_is_one_line(tmp_path: Path, capfd) -> None:
+    """Neither a missing file nor a damaged one makes OpenCV print anything of its own."""
+    damaged = tmp_path / "b.tflite"
+    damaged.write_bytes(MODEL.read_bytes()[:1000])
+    for path in (tmp_path / "a.tflite", damaged):
+        with pytest.raises(OptionError, match=r"tflite is missing or damaged; .*--focus none"):
+            BlazeFace(path)
+    assert capfd.readouterr() == ("", "")
+
+
+def test_network_is_shipped_with_its_licence() -> None:
+    """The licence and where the network is from stand beside it."""
+    assert MODEL.stat().st_size == 315332
+    assert "Apache License" in MODEL.with_name("LICENSE").read_text(encoding="utf-8")
+    assert "Apache License 2.0" in MODEL.with_name("README.md").read_text(encoding="utf-8")
+
+
+def test_portrait_has_one_face(portrait: np.ndarray, search: FaceSearch) -> None:
+    """Middle, eyes, mouth and size lie where they are seen."""
+    ((certainty, face),) = search.everywhere(portrait, OPENING)
+    assert certainty > SURE
+    assert face.places == pytest.approx(np.array([MIDDLE, *EYES, MOUTH]), abs=8)
+    assert face.size == pytest.approx(SIZE, rel=0.2)
+
+
+@pytest.mark.parametrize("size", [20, 40, 150])
+@pytest.mark.parametrize("turn", [-30, 0, 40])
+@pytest.mark.parametrize("mirrored", [False, True])
+def test_small_turned_and_mirrored_faces_are_found(
+    size: int, turn: int, mirrored: bool, portrait: np.ndarray, search: FaceSearch
+) -> None:
+    """A face of a photograph, wherever it is."""
+    picture = seen_from(portrait, (320, 240), (160, 110), size, turn, mirrored=mirrored)
+    found = search.everywhere(picture, OPENING)
+    near = [face for c, face in found if c >= SURE and np.hypot(*(face.middle - (160, 110))) < size]
+    assert near
+    assert near[0].size == pytest.approx(size, rel=0.3)
+
+
+@pytest.mark.parametrize("kind", ["noise", "flat", "squares", "clouds"])
+def test_nothing_is_no_face(kind: str, search: FaceSearch) -> None:
+    """Noise, plain grey, drawn shapes and soft blobs."""
+    rng = np.random.default_rng(5)
+    pictures = {
+        "noise": rng.integers(0, 256, (200, 300, 3)),
+        "flat": np.full((200, 300, 3), 90),
+        "squares": samples.chart(300, 200),
+        "clouds": cv2.resize(rng.integers(0, 256, (20, 30, 3)).astype(np.uint8), (300, 200)),
+    }
+    assert not search.everywhere(pictures[kind].astype(np.uint8), OPENING)
+
+
+def test_search_does_not_depend_on_threads(portrait: np.ndarray, search: FaceSearch) -> None:
+    """The same places to the bit, whatever OpenCV does with its threads."""
+    found = []
+    before = cv2.getNumThreads()
+    try:
+        for threads in (1, 2, 3):
+            cv2.setNumThreads(threads)
+            found.append(search.everywhere(portrait, OPENING)[0])
+    finally:
+        cv2.setNumThreads(before)
+    for certainty, face in found:
+        assert certainty == found[0][0]
+        np.testing.assert_array_equal(face.places, found[0][1].places)
+
+
+def test_without_a_face_all_is_as_without_focus(tmp_path: Path) -> None:
+    """The same bits, frame by frame, and a note that tells why."""
+    pictures = [samples.picture(96, 64, number) for number in range(5)]
+    clip = samples.write_video(tmp_path / "in.mp4", pictures)
+    notes = solve_to(tmp_path / "auto.mtrk", clip).notes
+    assert "--focus auto: no face found" in notes
+    for name, focus in (("none", NoFocus()), ("zero", Faces(strength=0.0))):
+        told = solve_to(tmp_path / f"{name}.mtrk", clip, focus=(focus,)).notes
+        assert not any("--focus" in note for note in told)
+        assert rows_of(tmp_path / f"{name}.mtrk") == rows_of(tmp_path / "auto.mtrk")
+
+
+def test_strength_zero_is_none_with_a_face(clip: Path, whole: Path, tmp_path: Path) -> None:
+    """Nothing is added, so nothing changes; with a face it does."""
+    tracks = {"none": NoFocus(), "zero": Auto(strength=0.0)}
+    for name, focus in tracks.items():
+        solve_to(tmp_path / f"{name}.mtrk", clip, "0-3", focus=(focus,))
+    none, zero = (rows_of(tmp_path / f"{name}.mtrk") for name in tracks)
+    assert none == zero
+    assert none["meshes"][0] != rows_of(whole)["meshes"][0]
+
+
+def test_face_is_drawn_better_and_told_honestly(portrait: np.ndarray, tmp_path: Path) -> None:
+    """The face gains, the rest loses little, and the rmse that is told is that of all pixels."""
+    errors, told = {}, {}
+    wanted = replace(QUICK, iterations=120, refine=replace(QUICK.refine, triangles=400))
+    for name, focus in (("none", NoFocus()), ("auto", Auto())):
+        output = tmp_path / f"{name}.png"
+        job = Job(PORTRAIT, output, triangulate=wanted, focus=(focus,))
+        told[name] = animate(job, Progress()).mean_rmse
+        with open_decoder(output) as decoder:
+            squares = (next(decoder).pixels.astype(float) - portrait) ** 2
+        errors[name] = np.sqrt([squares[73:184, 170:281].mean(), squares.mean()])
+    assert errors["auto"][0] < 0.8 * errors["none"][0]
+    assert errors["auto"][1] < 1.08 * errors["none"][1]
+    for name in told:
+        assert told[name] == pytest.approx(errors[name][1], rel=0.1)
+
+
+def test_ranges_resume_and_jobs_are_the_whole(clip: Path, whole: Path, tmp_path: Path) -> None:
+    """A shot alone, a run that goes on inside a shot, and two processes: the same bits."""
+    rows = rows_of(whole)
+    assert [row[2] for row in rows["frames"]] == [0] * CUT + [CUT] * (COUNT - CUT)
+    alone = tmp_path / "alone.mtrk"
+    solve_to(alone, clip, f"{CUT}-")
+    assert rows_of(alone)["meshes"] == rows["meshes"][CUT:]
+    for last in (SPACING, SPACING + 2, CUT + 5):
+        track = tmp_path / f"{last}.mtrk"
+        solve_to(track, clip, f"0-{last}")
+        assert rows_of(track)["meshes"] == rows["meshes"][: last + 1]
+        solve_to(track, clip, resume=True)
+        assert rows_of(track) == rows
+    job = Job(clip, tmp_path / "j.mtrk", track=tmp_path / "j.mtrk", triangulate=QUICK, jobs=2)
+    solve_in_parts(job, Progress())
+    assert rows_of(tmp_path / "j.mtrk")["meshes"] == rows["meshes"]
+
+
+def test_track_tells_its_focus(whole: Path, clip: Path, tmp_path: Path, capsys) -> None:
+    """`info` names it, a resume with another one is refused, and old tracks had none."""
+    assert main(["info", str(whole)]) == 0
+    assert "focus      auto" in capsys.readouterr().out
+    track = tmp_path / "t.mtrk"
+    solve_to(track, clip, "0-2")
+    with pytest.raises(OptionError, match="--focus"):
+        solve_to(track, clip, resume=True, focus=(NoFocus(),))
+    with TrackReader(track) as reader:
+        options = dict(reader.header.options)
+    del options["focus"]
+    assert from_plain(Job, options).foci == (Auto(),)  # so a header has to say it
+    forget_focus(track)
+    with TrackReader(track) as reader:
+        assert reader.header.job.foci == ()
+
+
+def forget_focus(track: Path) -> None:
+    """Make a track one of those from before there was a focus."""
+    connection = sqlite3.connect(track)
+    with connection:
+        (text,) = connection.execute("SELECT value FROM header WHERE key = 'options'").fetchone()
+        options = json.loads(text)
+        del options["focus"]
+        text = json.dumps(options)
+        connection.execute("UPDATE header SET value = ? WHERE key = 'options'", [text])
+    connection.close()
+
+
+def test_weights_follow_and_never_switch(portrait: np.ndarray) -> None:
+    """A face that wanders is covered in every frame; one that is hidden fades; no step is large."""
+    size = (160, 120)
+    pictures = [seen_from(portrait, size, (60 + n, 55), 45) for n in range(40)]
+    for hidden in pictures[20:28]:
+        hidden[20:95] = 90
+    weights = weights_of(pictures)
+    for n in range(20):
+        assert weights[n][55, 60 + n] > 4
+        assert weights[n][110, 5] == 1
+    assert weights[26].max() < weights[20].max()
+    steps = [np.abs(b - a).max() for a, b in pairwise(weights)]
+    assert max(steps) < 0.5 * max(one.max() - 1 for one in weights)
+
+
+def test_small_faces_keep_their_strength(portrait: np.ndarray) -> None:
+    """What a face adds does not depend on its size, and ends without a step."""
+    places = np.array([[50.0, 50.0], [45.0, 45.0], [55.0, 45.0], [50.0, 58.0]])
+    for scale in (0.4, 1.0, 8.0):
+        added = emphasis([Face(scale * places, scale * 25)], (int(scale * 100),) * 2)
+        assert 9 < added.max() < 14
+        assert added[0].max() == added[-1].max() == added[:, 0].max() == 0
+        assert np.abs(np.diff(added, axis=0)).max() < 0.6 * added.max()
+    assert not emphasis([Face(places + 1000, 25)], (100, 100)).any()
+    assert emphasis([Face(places, 25, share=0.5)], (100, 100)).max() < 7
+
+
+@dataclass
+class FickleSearch:
+    """Finds faces that come and go by chance, the same in the same frame; remembers nothing."""
+
+    looks: list[int] = field(default_factory=list)
+
+    def everywhere(self, pixels: np.ndarray, most: float) -> list[tuple[float, Face]]:
+        """Some faces, more of them in a thorough search."""
+        rng = np.random.default_rng([int(pixels[0, 0, 0]), int(pixels[0, 0, 1]), int(most)])
+        self.looks.append(int(most))
+        count = rng.integers(0, 3) if most == OPENING else rng.integers(0, 2)
+        return [(rng.uniform(0.5, 0.9), self._face(rng)) for _ in range(count)]
+
+    def near(self, pixels: np.ndarray, face: Face) -> Face | None:
+        """The face, moved a little, or nothing."""
+        seed = [*pixels[0, 0].tolist(), *np.round(face.places.reshape(-1) * 100).astype(int) % 9973]
+        rng = np.random.default_rng(seed)
+        if rng.random() < 0.25:
+            return None
+        return replace(face, places=face.places + rng.uniform(-2, 2, 2), share=1.0)
+
+    def _face(self, rng: np.random.Generator) -> Face:
+        middle = rng.uniform(20, 80, 2)
+        return Face(middle + np.array([[0, 0], [-4, -4], [4, -4], [0, 6]]), rng.uniform(14, 30))
+
+
+def numbered(first: int, last: int) -> list[Frame]:
+    """Frames whose pixels tell their number."""
+    frames = []
+    for n in range(first, last):
+        pixels = np.zeros((4, 4, 3), np.uint8)
+        pixels[0, 0] = (n % 256, n // 256, 7)
+        frames.append(Frame(n, n, Fraction(1, 25), pixels))
+    return frames
+
+
+def tracked(first: int, last: int, step: int = 1) -> dict[int, np.ndarray | None]:
+    """What the faces of a shot add, by frame."""
+    tracks = FaceTracks(FickleSearch(), (100, 100), step, is_still=False)
+    frames = numbered(first, last)
+    for frame in frames:
+        tracks.see(frame, is_last=frame is frames[-1])
+    return {frame.index: tracks.added(frame.index) for frame in frames}
+
+
+def test_what_lies_far_back_does_not_matter() -> None:
+    """Begun anywhere in a shot, after `MEMORY` frames all is as in the whole shot, to the bit."""
+    end = 2 * MEMORY + 150
+    known = tracked(0, end)
+    carried = 0
+    for start in (3, 40, 97, MEMORY + 5):
+        again = tracked(start, end)
+        for index in range(start + MEMORY, end):
+            one, other = known[index], again[index]
+            assert (one is None) == (other is None)
+            if one is not None:
+                np.testing.assert_array_equal(one, other)
+                carried += 1
+    assert carried > 100
+    assert CARRIED * SPACING < MEMORY
+
+
+def test_maps_are_smoothed_over_their_window(portrait: np.ndarray) -> None:
+    """A map depends on the frames around its own alone, and swells and fades around a flash."""
+    pictures = [np.full((40, 60, 3), 90, np.uint8) for _ in range(30)]
+    pictures[14][10:30, 20:40] = 250
+    for name in ("saliency", "motion"):
+        member = FOCI[name]()
+        weights = weights_of(pictures, member)
+        heights = np.array([one.max() for one in weights])
+        assert heights[14] > 1.2
+        assert (heights[: 14 - WINDOW - 1] == 1).all()
+        assert (heights[15 + WINDOW + 1 :] == 1).all()
+        before, _ = reach_of([member])
+        later = weights_of(pictures[5:], member, first=5)
+        for n in range(5 + before, 30):
+            np.testing.assert_array_equal(weights[n], later[n - 5])
+
+
+def test_motion_tells_what_moves_against_the_whole() -> None:
+    """A square that wanders over a ground that pans the other way."""
+    rng = np.random.default_rng(1)
+    ground = cv2.GaussianBlur(rng.integers(0, 256, (120, 260, 3)).astype(np.uint8), (0, 0), 2)
+    thing = cv2.GaussianBlur(rng.integers(0, 256, (30, 30, 3)).astype(np.uint8), (0, 0), 1.5)
+    pictures = []
+    for n in range(4):
+        picture = ground[:, 3 * n : 3 * n + 160].copy()
+        picture[45:75, 60 + 2 * n : 90 + 2 * n] = thing
+        pictures.append(picture)
+    weights = weights_of(pictures, FOCI["motion"]())[2]
+    assert weights[60, 78] > 3
+    assert np.median(weights) < 1.3
+
+
+def test_several_add_up_and_a_picture_multiplies(portrait: np.ndarray, tmp_path: Path) -> None:
+    """The sum of what members add; a map of the user's is a factor."""
+    pictures = [seen_from(portrait, (160, 120), (60, 55), 45)]
+    face, middle = weights_of(pictures, Faces())[0], weights_of(pictures, Center())[0]
+    both = weights_of(pictures, Faces(), Center())[0]
+    np.testing.assert_allclose(both, face + middle - 1, atol=1.01 / UNIT)
+    half = weights_of(pictures, Faces(strength=0.5))[0]
+    np.testing.assert_allclose(half - 1, 0.5 * (face - 1), atol=1.01 / UNIT)
+    still = samples.write_still(tmp_path / "in.png", pictures[0])
+    grey = samples.write_still(tmp_path / "map.png", np.full((120, 160, 3), 255, np.uint8))
+    solve_to(tmp_path / "a.mtrk", still)
+    solve_to(tmp_path / "b.mtrk", still, focus=(Auto(), Picture(str(grey))))
+    assert rows_of(tmp_path / "a.mtrk") == rows_of(tmp_path / "b.mtrk")
+
+
+def test_weights_map_is_the_picture(portrait: np.ndarray, tmp_path: Path) -> None:
+    """`--weights MAP` and `--focus picture:MAP` are the same."""
+    grey = np.repeat(np.linspace(0, 255, 160).astype(np.uint8)[None, :, None], 120, 0).repeat(3, 2)
+    path = str(samples.write_still(tmp_path / "map.png", grey))
+    still = samples.write_still(tmp_path / "in.png", samples.picture(160, 120))
+    solve_to(tmp_path / "a.mtrk", still, weights=path)
+    solve_to(tmp_path / "b.mtrk", still, focus=(Picture(path),))
+    assert rows_of(tmp_path / "a.mtrk") == rows_of(tmp_path / "b.mtrk")
+
+
+def test_modes_take_turns_without_a_trace(device: str) -> None:
+    """A frame without weights between two with some gives the bits of one that never had any."""
+    picture = samples.picture(64, 48)
+    plain = frame_of(picture, 0)
+    even = replace(plain, weights=np.full((48, 64), 8, np.uint8))
+    heavy = replace(plain, weights=np.arange(48 * 64).reshape(48, 64).astype(np.uint8) % 200 + 1)
+    triangulator = Triangulator(Device(device), (64, 48), QUICK)
+
+    def solved(frame: Frame) -> np.ndarray:
+        """Vertices of a frame."""
+        return triangulator.first(frame, Importance(), np.random.default_rng(3)).mesh.vertices
+
+    first, weighted, again, ones = (solved(f) for f in (plain, heavy, plain, even))
+    np.testing.assert_array_equal(first, again)
+    np.testing.assert_array_equal(first, ones)
+    assert first.shape != weighted.shape or (first != weighted).any()
