@@ -170,7 +170,7 @@ def _reason_to_convert(stream: AudioStream, container: Container, mode: str) -> 
     if not held:
         return f"{container.format} cannot hold {name} audio: converted to {target}"
     channels = channels_of(stream.codec_context)
-    if name.startswith("pcm_") and container.format == "matroska":
+    if name.startswith("pcm_") and container.format == "matroska" and mode == "auto":
         usual = _USUAL.get(channels.count)
         if channels.count > 2 and channels.order not in (usual, f"{channels.count} channels"):
             return f"{container.format} cannot state {channels.order}: converted to {_LOSSLESS}"
