@@ -15,6 +15,7 @@ from contextlib import AbstractContextManager, contextmanager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
+from pipeline.crash_watch import watch_for_crashes
 from pipeline.parser import build_parser
 
 if TYPE_CHECKING:
@@ -41,6 +42,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         interrupted.
     """
     _print_anything()
+    if argv is None:  # else it is called by a program that takes care of itself
+        watch_for_crashes()
     try:
         arguments = build_parser().parse_args(argv)
     except SystemExit as request:

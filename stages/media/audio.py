@@ -169,13 +169,29 @@ class _CopiedTrack(AudioTrack):
     """Packets as they are."""
 
     _last_dts: Fraction | None = None
-    _heard = False
+    _hidden: list[tuple[Packet, Fraction]] | None = None
+
+    def begin(self, start: Fraction | None) -> None:
+        """Say where the sound starts; see the base class."""
+        super().begin(start)
+        self._hidden = []
 
     def _handle(self, packet: Packet, time: Fraction | None) -> None:
+        """Copy a packet; of what an edit list cuts off only what the decoder needs."""
         if time is None or (self._start is not None and time < self._start):
             return
-        if packet.is_discard and (self._heard or time < -_PRIMING):
-            return  # cut off by the file's edit list; a decoder needs the last ones before it
+        if packet.is_discard:
+            if self._hidden is not None:
+                recent = [entry for entry in self._hidden if entry[1] >= time - _PRIMING]
+                self._hidden = [*recent, (packet, time)]
+            return
+        hidden, self._hidden = self._hidden or [], None
+        for earlier, begun in hidden:
+            if begun >= time - _PRIMING:
+                self._copy(earlier)
+        self._copy(packet)
+
+    def _copy(self, packet: Packet) -> None:
         base = Fraction(packet.time_base)
         shift = round((self._offset - (self._start or 0)) / base)
         pts = packet.dts if packet.pts is None else packet.pts
@@ -186,7 +202,6 @@ class _CopiedTrack(AudioTrack):
             self.problem = "audio packets that run backwards are left out"
             return
         self._last_dts = dts
-        self._heard = self._heard or not packet.is_discard
         packet.stream = self._target
         self._output.mux(packet)
 

@@ -29,11 +29,14 @@ _BITS_PER_CHANNEL = 96_000
 _LAYOUTS = {
     "aac": ("mono", "stereo", "3.0", "4.0", "5.0", "5.1"),
     "libopus": ("mono", "stereo", "3.0", "quad", "5.1", "5.1", "7.1", "7.1"),
+    "flac": ("mono", "stereo", "3.0", "quad", "5.0", "5.1", "6.1", "7.1"),
 }
 """Orders of an encoder that players know, by the number of channels at least. FFmpeg's Opus puts
 the channels of 5.0 and 6.1 in wrong places; the next larger order holds them all."""
 _USUAL = {3: "2.1", 4: "4.0", 5: "5.0", 6: "5.1", 7: "6.1", 8: "7.1"}
 """Orders that are understood where none is stated, by the number of channels."""
+_LOSSLESS = "flac"
+"""What uncompressed sound becomes where only its order of channels stands in the way."""
 _RARELY_PLAYED = {"mp4": ("pcm_",)}
 """Codecs that a format holds and few players play there, by the beginning of their name."""
 
@@ -78,7 +81,9 @@ def plan_audio(path: Path, container: Container, mode: str) -> AudioPlan | None:
         why = _reason_to_convert(stream, container, mode)
         if not why:
             return AudioPlan(None, notes=tuple(notes))
-        return _plan_conversion(source, stream, container, [*notes, why])
+        keeps = why.endswith(_LOSSLESS)
+        encoder = _LOSSLESS if keeps else container.audio or "aac"
+        return _plan_conversion(source, stream, container, encoder, [*notes, why])
 
 
 def best_audio(source: InputContainer) -> AudioStream | None:
@@ -165,10 +170,10 @@ def _reason_to_convert(stream: AudioStream, container: Container, mode: str) -> 
     if not held:
         return f"{container.format} cannot hold {name} audio: converted to {target}"
     channels = channels_of(stream.codec_context)
-    if name.startswith("pcm_") and container.format == "matroska":
+    if name.startswith("pcm_") and container.format == "matroska" and mode == "auto":
         usual = _USUAL.get(channels.count)
         if channels.count > 2 and channels.order not in (usual, f"{channels.count} channels"):
-            return f"{container.format} cannot state {channels.order}: converted to {target}"
+            return f"{container.format} cannot state {channels.order}: converted to {_LOSSLESS}"
     if mode == "convert" and name != target:
         return f"{name} audio is converted to {target}"
     if name.startswith(_RARELY_PLAYED.get(container.format, ("-",))):
@@ -192,10 +197,13 @@ def _can_copy(stream: AudioStream, format_name: str) -> bool:
 
 
 def _plan_conversion(
-    source: InputContainer, stream: AudioStream, container: Container, notes: list[str]
+    source: InputContainer,
+    stream: AudioStream,
+    container: Container,
+    encoder: str,
+    notes: list[str],
 ) -> AudioPlan | None:
     """The first order of channels, from as many as the sound has downwards, that works."""
-    encoder = container.audio or "aac"
     known = _LAYOUTS[encoder]
     heard, reason = _beginning(source, stream)
     channels = heard[0][1] if heard else channels_of(stream.codec_context)
@@ -212,8 +220,7 @@ def _plan_conversion(
             notes.append(f"the audio's {channels.count} channels are mixed down to {plan.layout}")
         return replace(plan, notes=tuple(notes))
     raise OptionError(
-        f"the audio cannot be converted to {container.audio_name} ({reason}); --no-audio leaves "
-        "it out"
+        f"the audio cannot be converted with {encoder} ({reason}); --no-audio leaves it out"
     )
 
 

@@ -7,6 +7,7 @@ from fractions import Fraction
 import av
 from av.video.codeccontext import VideoCodecContext
 
+from stages.media.audio_plan import MODES
 from stages.media.codecs import Encoder
 from stages.media.color import tag_bt709
 from stages.media.container import DAMAGE, reason_of
@@ -42,7 +43,7 @@ class EncodeOptions:
         metadata={
             "help": "copy carries the source's audio packet by packet, convert makes AAC or Opus "
             "of it, auto copies what players of the format play",
-            "choices": ("auto", "copy", "convert"),
+            "choices": MODES,
             "flag": "audio",
         },
     )

@@ -1,0 +1,50 @@
+"""A crash inside of a library ends as one line."""
+
+import subprocess
+import sys
+
+import pytest
+from test_encode import ROOT
+
+CRASHES = {
+    "abort": "import os; os.abort()",
+    "segmentation fault": "import ctypes; ctypes.string_at(0)",
+}
+ENDINGS = {
+    "end": "pass",
+    "error": "raise SystemExit(3)",
+    "kill": "import os, signal; os.kill(os.getpid(), signal.SIGKILL)",
+}
+
+
+def run(code: str) -> subprocess.CompletedProcess[str]:
+    """Run a program that is watched."""
+    start = "from pipeline.crash_watch import watch_for_crashes as w; w(); "
+    command = [sys.executable, "-c", start + code]
+    return subprocess.run(command, capture_output=True, text=True, cwd=ROOT)
+
+
+@pytest.mark.parametrize("crash", CRASHES)
+def test_a_crash_is_one_line(crash: str) -> None:
+    """It says what, and what to do."""
+    done = run(CRASHES[crash])
+    assert done.returncode != 0
+    (line,) = done.stderr.splitlines()
+    assert line.startswith("trimotion: error: a library crashed (")
+    assert crash in line or "aborted" in line
+    assert "convert" in line
+
+
+@pytest.mark.parametrize("ending", ENDINGS)
+def test_other_ends_are_silent(ending: str) -> None:
+    """Whether it went well or not."""
+    done = run(ENDINGS[ending])
+    assert (done.stdout, done.stderr) == ("", "")
+
+
+def test_the_command_line_is_watched() -> None:
+    """And as quick as before to say a mistake."""
+    done = subprocess.run(
+        [sys.executable, "-m", "pipeline.cli", "animate"], capture_output=True, text=True, cwd=ROOT
+    )
+    assert (done.returncode, len(done.stderr.splitlines())) == (2, 1)
