@@ -51,6 +51,16 @@ def test_points_on_an_outline_move_with_what_is_in_front() -> None:
     assert np.array_equal(steps, np.tile([5.0, 0.0], (3, 1)))
 
 
+def test_what_stands_still_is_seen_to_stand() -> None:
+    """On a faint slope a motion of 3 px fits nearly as well; standing still fits, and wins."""
+    slope = np.repeat((np.arange(SIZE) // 6).astype(np.uint8)[None, :, None], SIZE, axis=0)
+    slope = np.repeat(slope, 3, axis=2)
+    motion = np.zeros((SIZE, SIZE, 2))
+    motion[..., 0] = 3.0
+    steps, _ = passage_along(field(motion), slope, slope).follow(np.array([[40.0, 50.0]]))
+    assert np.array_equal(steps, [[0.0, 0.0]])
+
+
 def test_a_right_flow_is_kept_and_trusted() -> None:
     """Where the flow is right its own motion wins, inside of the card and beside it."""
     motion = np.zeros((SIZE, SIZE, 2))
