@@ -63,7 +63,7 @@ class Energy:
     """As `relocated`, in a followed picture."""
     calm_profit: float = 2.0
     """As `profit`, in a followed picture."""
-    calm_hold: float = 1.1
+    calm_hold: float = 1.15
     """In a followed picture that boils in places, a vertex where it is calm goes only if one where
     it boils would cost this many times as much."""
     growth: Growth = TWICE
