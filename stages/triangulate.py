@@ -28,6 +28,9 @@ from warp_kernels.workspace import Workspace
 SPRING = 39.0
 """Strength of the temporal term where the motion is certain, as a multiple of the mean squared
 error of the mesh: what pulls at vertices without cause grows with what triangles cannot show."""
+REST_FIRMNESS, FIRMEST = 1.5, 4.0
+"""Where weights lead triangles elsewhere the spring grows with this power of the mean weight beside
+the median one, up to so many times."""
 FRAME_DISPLACEMENT = 0.75
 """Distance of the variants in later frames [px]: a wider one finds steadier places, and a narrower
 one those that fit the picture better."""
@@ -266,7 +269,7 @@ class Triangulator:
         springs[known, :2] = seed.mesh.vertices[old[known]]
         springs[known, 2] = spring * seed.trust[old[known]]
         if weights is not None:
-            springs[:, 2] *= weights_at(weights, springs[:, :2]) / weights.mean()
+            springs[:, 2] *= firmness(weights, springs[:, :2])
         load_mesh(self._workspace, mesh, springs)
         return optimize(
             self._workspace,
@@ -324,16 +327,23 @@ def _against(options: TriangulateOptions, scale: float) -> TriangulateOptions:
     return replace(options, optimize=replace(pull, regularity=pull.regularity * scale))
 
 
-def weights_at(weights: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """Weights of the pixels in which points lie.
+def firmness(weights: np.ndarray, points: np.ndarray) -> np.ndarray:
+    """How much firmer springs are for the weights of a picture.
+
+    What pulls at a vertex grows with the weights around it, and so does its spring. The rest of
+    the picture has fewer triangles than without weights, which show more of every change: there
+    vertices are held the more firmly the more of them went elsewhere.
 
     Args:
         weights: [H, W] uint8.
         points: Positions [px], [N, 2].
 
     Returns:
-        [N] float64.
+        1 where all weights are alike, [N].
     """
+    mean = float(weights.mean())
+    rest = (mean / float(np.median(weights))) ** REST_FIRMNESS
     size = np.array(weights.shape[::-1])
     columns, rows = np.clip(points.astype(np.int64), 0, size - 1).T
-    return weights[rows, columns].astype(np.float64)
+    firmer: np.ndarray = np.maximum(weights[rows, columns] / mean, min(rest, FIRMEST))
+    return firmer
