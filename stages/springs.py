@@ -5,6 +5,10 @@ import numpy as np
 from stages.advect import Carried
 from stages.mesh import Mesh
 
+REST_FIRMNESS, FIRMEST = 1.5, 4.0
+"""Where weights lead triangles elsewhere the spring grows with this power of the mean weight beside
+the median one, up to so many times."""
+
 
 def springs_of(
     mesh: Mesh, seed: Carried, strength: float, weights: np.ndarray | None
@@ -28,12 +32,27 @@ def springs_of(
     springs[known, :2] = seed.mesh.vertices[old[known]]
     springs[known, 2] = strength * seed.trust[old[known]]
     if weights is not None:
-        springs[:, 2] *= _weights_at(weights, springs[:, :2]) / weights.mean()
+        springs[:, 2] *= _firmness(weights, springs[:, :2])
     return springs
 
 
-def _weights_at(weights: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """Weights of the pixels in which points [N, 2] lie, [N] float64."""
+def _firmness(weights: np.ndarray, points: np.ndarray) -> np.ndarray:
+    """How much firmer springs are for the weights of a picture.
+
+    What pulls at a vertex grows with the weights around it, and so does its spring. The rest of
+    the picture has fewer triangles than without weights, which show more of every change: there
+    vertices are held the more firmly the more of them went elsewhere.
+
+    Args:
+        weights: [H, W] uint8.
+        points: Positions [px], [N, 2].
+
+    Returns:
+        1 where all weights are alike, [N].
+    """
+    mean = float(weights.mean())
+    rest = (mean / float(np.median(weights))) ** REST_FIRMNESS
     size = np.array(weights.shape[::-1])
     columns, rows = np.clip(points.astype(np.int64), 0, size - 1).T
-    return weights[rows, columns].astype(np.float64)
+    firmer: np.ndarray = np.maximum(weights[rows, columns] / mean, min(rest, FIRMEST))
+    return firmer
