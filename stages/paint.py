@@ -4,15 +4,19 @@ import numpy as np
 
 from stages.mesh import centres_of
 from stages.snapshot import Snapshot, colors_at
+from warp_kernels.lay import Lay
 from warp_kernels.paint import Paint
 
 
-def paint_of(snapshot: Snapshot, shares: np.ndarray | None = None) -> Paint:
+def paint_of(
+    snapshot: Snapshot, shares: np.ndarray | None = None, lay: Lay | None = None
+) -> Paint:
     """Shapes and colours of all triangles of a snapshot.
 
     Args:
         snapshot: The frame.
         shares: Which followed regions each belongs to, see `Paint`; None if there are none.
+        lay: How strokes lie on them; None if they follow the triangles' own base edges.
     """
     mesh, model, coefficients = snapshot.mesh, snapshot.model, snapshot.coefficients
     corners = mesh.corners
@@ -30,7 +34,7 @@ def paint_of(snapshot: Snapshot, shares: np.ndarray | None = None) -> Paint:
         gradients[:, 1] += x * curvatures[:, 2] + 2 * y * curvatures[:, 3]
         colors = colors - curvatures[:, 0]
     clipped = np.clip(colors, 0.0, 255.0)
-    return Paint(clipped, gradients, curvatures, corners, mesh.triangle_ids, shares)
+    return Paint(clipped, gradients, curvatures, corners, mesh.triangle_ids, shares, lay)
 
 
 def _curvatures(snapshot: Snapshot) -> np.ndarray:
