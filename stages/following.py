@@ -55,7 +55,7 @@ def inherited(before: Snapshot, after: Snapshot, members: np.ndarray) -> np.ndar
     born = np.flatnonzero(kept < 0)
     colors = [colors_at_centres(s.mesh, s.model, s.coefficients) for s in (before, after)]
     votes = np.zeros((len(born), members.shape[1]))
-    for voters in (beneath(before.mesh, mesh, born), _beside(mesh, kept, born)):
+    for voters in (_beneath(before.mesh, mesh, born), _beside(mesh, kept, born)):
         owners, others, shares = voters
         away = np.square(colors[1][born[owners]] - colors[0][others]).sum(axis=1)
         weights = shares / np.square(1.0 + away / ALIKE**2)
@@ -69,14 +69,8 @@ Voters = tuple[np.ndarray, np.ndarray, np.ndarray]
 """Places among new triangles, numbers of known ones that vote about them, and their shares; [N]."""
 
 
-def beneath(before: Mesh, mesh: Mesh, born: np.ndarray) -> Voters:
-    """The triangles that lay where new ones lie, by the part of these that they cover.
-
-    Args:
-        before: The mesh whose triangles are known.
-        mesh: The new ones' mesh.
-        born: Numbers of the new ones, [N].
-    """
+def _beneath(before: Mesh, mesh: Mesh, born: np.ndarray) -> Voters:
+    """The triangles that lay where new ones lie, by the part of these that they cover."""
     corners = earlier_vertices(before, mesh)[mesh.triangles[born]]
     known = before.vertices[before.triangles]
     spans, links = overlaps(corners, known)

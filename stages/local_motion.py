@@ -1,4 +1,4 @@
-"""How the picture moves around every triangle, as far as its vertices tell together.
+"""How the picture moves around every triangle, as far as vertices tell it together.
 
 A vertex alone tells little: the optimiser has moved it, too. Its neighbours tell the same motion
 with other errors, unless they stand on something else.
@@ -11,56 +11,60 @@ import numpy as np
 from stages.mesh import Mesh
 
 ALIKE = 0.6
-"""Steps that differ by this count to a share of 0.6 for the same motion [px]; found by trial, see
-docs/strokes.md."""
+"""Steps that differ by so much count by 0.6 of equal ones [px]; as what follows found by trial,
+see docs/strokes.md."""
 ROUNDS = 3
 """How often every vertex listens to its neighbours."""
 FIRM = 30.0
-"""A triangle whose corners lie this far from its centre, squared, turns by half of what they say
-[px^2]."""
+"""Corners so far from their centre, squared and in the mean, turn a triangle by half of what they
+say [px^2]."""
 LEAST = 1e-9
-"""Share with which a vertex insists on its own step where nobody says the same."""
+"""How much a corner counts whose step is like no other."""
 
 
 @dataclass(frozen=True, eq=False)
 class Motions:
-    """How some triangles move from one frame to the next: rigidly."""
+    """How triangles have moved, without a change of their shape."""
 
     steps: np.ndarray
-    """Steps of their centroids, right and down as one complex number each [px], [T]."""
+    """Steps of their centroids [px], right + i down, [T]."""
     turns: np.ndarray
-    """What directions are multiplied by: complex numbers of length 1, [T]."""
+    """What turns their directions, complex numbers of length 1, [T]."""
 
 
 def planar(vectors: np.ndarray) -> np.ndarray:
-    """Vectors [..., 2] as complex numbers, right and down."""
+    """Vectors [..., 2] as complex numbers, right + i down."""
     return vectors[..., 0] + 1j * vectors[..., 1]
 
 
-def local_motions(mesh: Mesh, steps: np.ndarray) -> Motions:
+def local_motions(mesh: Mesh, steps: np.ndarray, is_known: np.ndarray) -> Motions:
     """What triangles and those around them have in common.
 
     Args:
         mesh: The mesh, after the steps.
         steps: How each vertex has moved [px], [V, 2].
+        is_known: Whether it has been there before, so that the step says something, [V] bool.
 
-    Source: Tomasi & Manduchi, Bilateral filtering for gray and color images (1998), on the steps
-        of a mesh instead of on colours.
+    Source: Tomasi & Manduchi, Bilateral filtering for gray and color images (1998): here of steps
+        instead of colours.
     """
-    found = planar(steps)
-    tails, heads = mesh.edge_vertices.T
-    ends = np.concatenate([tails, heads]), np.concatenate([heads, tails])
+    # each inner edge comes in both directions, once from either side
+    told_to = mesh.triangles.ravel()
+    told_by = np.roll(mesh.triangles, -1, axis=1).ravel()
+    count, found, weights = mesh.vertex_count, planar(steps), is_known.astype(float)
     for _ in range(ROUNDS):
-        told = found[ends[1]]
-        shares = _likeness(told - found[ends[0]])
-        # its own step counts like that of a neighbour who says the same
-        sums = found + _sums(ends[0], shares * told, len(found))
-        found = sums / (1.0 + np.bincount(ends[0], shares, len(found)))
+        told = found[told_by]
+        likeness = np.where(weights[told_to] > 0.0, _likeness(told - found[told_to]), 1.0)
+        shares = weights[told_by] * likeness
+        sums = weights * found + _sums(told_to, shares * told, count)
+        totals = weights + np.bincount(told_to, shares, count)
+        weights = np.where(totals > 0.0, 1.0, 0.0)
+        found = sums / np.maximum(totals, LEAST)
     return _rigid(planar(mesh.vertices)[mesh.triangles], found[mesh.triangles])
 
 
 def _rigid(corners: np.ndarray, steps: np.ndarray) -> Motions:
-    """The rigid motions nearest to those of three corners each, of two if one goes elsewhere.
+    """Rigid motions of triangles, of two corners if the third one goes elsewhere.
 
     Args:
         corners: Where they are [px], [T, 3] complex.
@@ -79,10 +83,10 @@ def _rigid(corners: np.ndarray, steps: np.ndarray) -> Motions:
 
 def _likeness(differences: np.ndarray) -> np.ndarray:
     """How far steps with such differences [px, complex] count for one motion, 0 to 1."""
-    return np.exp(-(differences.real**2 + differences.imag**2) / (2.0 * ALIKE**2))
+    return np.exp((differences.real**2 + differences.imag**2) * (-0.5 / ALIKE**2))
 
 
 def _sums(places: np.ndarray, values: np.ndarray, count: int) -> np.ndarray:
     """Sums of complex values for each of `count` places."""
-    parts = (np.bincount(places, part, count) for part in (values.real, values.imag))
-    return next(parts) + 1j * next(parts)
+    right, down = (np.bincount(places, part, count) for part in (values.real, values.imag))
+    return right + 1j * down

@@ -77,7 +77,9 @@ class Renderer:
             style of the stack is opaque.
         """
         mesh = snapshot.mesh
-        paint, layers = (paint_of(snapshot, shares, lay), None) if fading is None else fading.layers()
+        paint, layers = paint_of(snapshot, shares, lay), None
+        if fading is not None:
+            paint, layers = fading.layers()
         return self._canvas.draw(
             vertices=mesh.vertices,
             triangles=mesh.triangles,
