@@ -37,13 +37,14 @@ def planar(vectors: np.ndarray) -> np.ndarray:
     return vectors[..., 0] + 1j * vectors[..., 1]
 
 
-def local_motions(mesh: Mesh, steps: np.ndarray, is_known: np.ndarray) -> Motions:
+def local_motions(mesh: Mesh, steps: np.ndarray, tells: np.ndarray) -> Motions:
     """What triangles and those around them have in common.
 
     Args:
         mesh: The mesh, after the steps.
         steps: How each vertex has moved [px], [V, 2].
-        is_known: Whether it has been there before, so that the step says something, [V] bool.
+        tells: Whether that says something about the picture, [V] bool; the others go along with
+            those around them.
 
     Source: Tomasi & Manduchi, Bilateral filtering for gray and color images (1998): here of steps
         instead of colours.
@@ -51,7 +52,7 @@ def local_motions(mesh: Mesh, steps: np.ndarray, is_known: np.ndarray) -> Motion
     # each inner edge comes in both directions, once from either side
     told_to = mesh.triangles.ravel()
     told_by = np.roll(mesh.triangles, -1, axis=1).ravel()
-    count, found, weights = mesh.vertex_count, planar(steps), is_known.astype(float)
+    count, found, weights = mesh.vertex_count, planar(steps), tells.astype(float)
     for _ in range(ROUNDS):
         told = found[told_by]
         likeness = np.where(weights[told_to] > 0.0, _likeness(told - found[told_to]), 1.0)

@@ -8,9 +8,7 @@ from warp_kernels.lay import Lay
 from warp_kernels.paint import Paint
 
 
-def paint_of(
-    snapshot: Snapshot, shares: np.ndarray | None = None, lay: Lay | None = None
-) -> Paint:
+def paint_of(snapshot: Snapshot, shares: np.ndarray | None = None, lay: Lay | None = None) -> Paint:
     """Shapes and colours of all triangles of a snapshot.
 
     Args:

@@ -50,13 +50,16 @@ class Strokes:
         vertices = kept_vertices(before, mesh)
         is_known = vertices >= 0
         steps = np.where(is_known[:, None], mesh.vertices - before.vertices[vertices], 0.0)
-        motions = local_motions(mesh, steps, is_known)
+        # those on the border stay there whatever the picture does
+        tells = is_known & ~(mesh.on_left_right | mesh.on_top_bottom)
+        motions = local_motions(mesh, steps, tells)
         centres = planar(centres_of(mesh.corners))
         sources = kept_rows(before.triangle_ids, mesh.triangle_ids)
         born = np.flatnonzero(sources < 0)
         if len(born):
             departures = (centres - motions.steps)[born]
-            sources[born] = self._shared(sources, _split_from(before, mesh, sources, born, departures))
+            wholes = _split_from(before, mesh, sources, born, departures)
+            sources[born] = self._shared(sources, wholes)
         return Strokes(mesh, self._carried(mesh, sources, motions, centres))
 
     def _shared(self, sources: np.ndarray, wanted: np.ndarray) -> np.ndarray:
