@@ -11,7 +11,9 @@ from stages.fading import Fading
 from stages.media import MediaInfo, check_output, open_encoder
 from stages.regions import open_masks
 from stages.render import Renderer
+from stages.strokes import Strokes
 from warp_kernels.device import Device
+from warp_kernels.lay import Lay
 
 
 class Drawing:
@@ -38,7 +40,9 @@ class Drawing:
         # Where every frame starts anew, triangles of the same number have nothing in common.
         self._blend = 0 if job.independent else job.blend
         self._smoother = Smoother(0.0 if job.independent else job.smooth)
+        self._lays_strokes = job.lays_strokes
         self._fading: Fading | None = None
+        self._strokes: Strokes | None = None
         self._shot: int | None = None
 
     @property
@@ -52,17 +56,34 @@ class Drawing:
             self._draw(smooth)
 
     def _draw(self, take: Take) -> None:
-        if self._blend:
-            if self._fading is None or take.shot != self._shot:
-                self._fading = Fading.begin(take.snapshot, self._blend, take.shares)
-            else:
-                self._fading = self._fading.followed_by(take.snapshot, take.shares)
-            self._shot = take.shot
+        self._follow(take)
         if take.is_shown:
             snapshot = take.snapshot
             masks = [mask.at(snapshot.frame_index) for mask in self._masks]
-            pixels = self._renderer.render(snapshot, self._fading, take.source, masks, take.shares)
+            pixels = self._renderer.render(
+                snapshot, self._fading, take.source, masks, take.shares, self._lay
+            )
             self._encoder.write(pixels, snapshot.pts, snapshot.time_base, snapshot.frame_index)
+
+    def _follow(self, take: Take) -> None:
+        """Take on what lies on a frame from the one before, and what lingers of it."""
+        begins, snapshot = take.shot != self._shot, take.snapshot
+        self._shot = take.shot
+        if self._lays_strokes:
+            known = None if begins else self._strokes
+            mesh = snapshot.mesh
+            self._strokes = Strokes.begin(mesh) if known is None else known.followed_by(mesh)
+        if self._blend:
+            fading = None if begins else self._fading
+            if fading is None:
+                self._fading = Fading.begin(snapshot, self._blend, take.shares, self._lay)
+            else:
+                self._fading = fading.followed_by(snapshot, take.shares, self._lay)
+
+    @property
+    def _lay(self) -> Lay | None:
+        """How the strokes of the frame lie, if they go on from the one before."""
+        return None if self._strokes is None else self._strokes.lay
 
     def __enter__(self) -> "Drawing":
         self._encoder.__enter__()

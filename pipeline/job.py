@@ -251,6 +251,14 @@ class Job:
         return max(self.triangulate.model, drawn, key=lambda model: model.degree)
 
     @property
+    def lays_strokes(self) -> bool:
+        """Whether a look has strokes that go on from frame to frame: all of a shot is needed.
+
+        Where every frame starts anew, triangles have nothing in common.
+        """
+        return not self.independent and any(style.lays_strokes for style in self._all_styles)
+
+    @property
     def needs_source(self) -> bool:
         """Whether a look shows the source picture."""
         return any(style.needs_source for style in self._all_styles)

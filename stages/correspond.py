@@ -15,9 +15,7 @@ def kept_vertices(before: Mesh, after: Mesh) -> np.ndarray:
     Returns:
         For every vertex of `after` its number in `before`, or -1; shape [V] int64.
     """
-    if np.array_equal(before.vertex_ids, after.vertex_ids):
-        return np.arange(after.vertex_count)
-    return _places(before.vertex_ids, after.vertex_ids)
+    return kept_rows(before.vertex_ids, after.vertex_ids)
 
 
 def kept_triangles(before: Mesh, after: Mesh) -> np.ndarray:
@@ -43,6 +41,21 @@ def kept_triangles(before: Mesh, after: Mesh) -> np.ndarray:
     count = before.vertex_count
     kept[whole] = _places(_keys(before.triangles, count), _keys(rows[whole], count))
     return kept
+
+
+def kept_rows(before: np.ndarray, after: np.ndarray) -> np.ndarray:
+    """Where ids stand among those of another frame.
+
+    Args:
+        before: Persistent numbers without repetition, [N] int64.
+        after: Others, [M] int64.
+
+    Returns:
+        For each of `after` its row in `before`, or -1; shape [M] int64.
+    """
+    if np.array_equal(before, after):
+        return np.arange(len(after))
+    return _places(before, after)
 
 
 def by_vertex_id(mesh: Mesh, triangles: np.ndarray | None = None) -> np.ndarray:

@@ -17,6 +17,7 @@ from stages.mesh import Mesh
 from stages.overlaps import overlaps
 from stages.paint import paint_of
 from stages.snapshot import Snapshot
+from warp_kernels.lay import Lay
 from warp_kernels.layers import Layers
 from warp_kernels.paint import Paint, joined_paint
 
@@ -75,26 +76,36 @@ class Fading:
     """What went in the last steps, by step."""
 
     @classmethod
-    def begin(cls, snapshot: Snapshot, frames: int, shares: np.ndarray | None = None) -> "Fading":
+    def begin(
+        cls,
+        snapshot: Snapshot,
+        frames: int,
+        shares: np.ndarray | None = None,
+        lay: Lay | None = None,
+    ) -> "Fading":
         """The first frame of a shot, with nothing behind it.
 
         Args:
             snapshot: The frame.
             frames: Frames over which triangles fade in; 0 for none.
             shares: Which followed regions its triangles belong to, see `Paint`.
+            lay: How strokes lie on them, the same.
         """
         count = snapshot.mesh.triangle_count
         origins = Origins(
             np.full(count, MATURE), np.zeros((count, 3, 2)), np.zeros((count, 2), np.int64)
         )
-        return cls(frames, 0, snapshot.mesh, paint_of(snapshot, shares), origins, {})
+        return cls(frames, 0, snapshot.mesh, paint_of(snapshot, shares, lay), origins, {})
 
-    def followed_by(self, snapshot: Snapshot, shares: np.ndarray | None = None) -> "Fading":
+    def followed_by(
+        self, snapshot: Snapshot, shares: np.ndarray | None = None, lay: Lay | None = None
+    ) -> "Fading":
         """The next frame of the shot.
 
         Args:
             snapshot: The frame.
             shares: Which followed regions its triangles belong to, see `Paint`.
+            lay: How strokes lie on them, the same.
 
         Returns:
             The same for every earlier frame with which it began, if more than `frames` ago.
@@ -119,7 +130,7 @@ class Fading:
             self,
             step=step,
             mesh=mesh,
-            paint=paint_of(snapshot, shares),
+            paint=paint_of(snapshot, shares, lay),
             origins=origins,
             vanished=vanished,
         )

@@ -4,15 +4,17 @@ import numpy as np
 
 from stages.mesh import centres_of
 from stages.snapshot import Snapshot, colors_at
+from warp_kernels.lay import Lay
 from warp_kernels.paint import Paint
 
 
-def paint_of(snapshot: Snapshot, shares: np.ndarray | None = None) -> Paint:
+def paint_of(snapshot: Snapshot, shares: np.ndarray | None = None, lay: Lay | None = None) -> Paint:
     """Shapes and colours of all triangles of a snapshot.
 
     Args:
         snapshot: The frame.
         shares: Which followed regions each belongs to, see `Paint`; None if there are none.
+        lay: How strokes lie on them; None if they follow the triangles' own base edges.
     """
     mesh, model, coefficients = snapshot.mesh, snapshot.model, snapshot.coefficients
     corners = mesh.corners
@@ -31,7 +33,7 @@ def paint_of(snapshot: Snapshot, shares: np.ndarray | None = None) -> Paint:
         colors = colors - curvatures[:, 0]
     limits = snapshot.bounds
     colors = np.clip(colors, limits[:, 0], limits[:, 1])
-    return Paint(colors, gradients, curvatures, limits, corners, mesh.triangle_ids, shares)
+    return Paint(colors, gradients, curvatures, limits, corners, mesh.triangle_ids, shares, lay)
 
 
 def _curvatures(snapshot: Snapshot) -> np.ndarray:

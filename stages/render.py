@@ -11,6 +11,7 @@ from stages.snapshot import Snapshot
 from warp_kernels.canvas import Canvas
 from warp_kernels.device import Device
 from warp_kernels.errors import OptionError
+from warp_kernels.lay import Lay
 from warp_kernels.raster import MAX_SIDE
 from warp_kernels.styles import Style
 
@@ -55,6 +56,7 @@ class Renderer:
         source: np.ndarray | None = None,
         masks: Sequence[np.ndarray] = (),
         shares: np.ndarray | None = None,
+        lay: Lay | None = None,
     ) -> np.ndarray:
         """Draw a snapshot.
 
@@ -67,13 +69,17 @@ class Renderer:
                 not (0), [H, W] uint8.
             shares: Which followed regions the triangles belong to, see `Paint`; with `fading`
                 those that it was told.
+            lay: How strokes lie; None if they follow the triangles' own base edges; with `fading`
+                that which it was told.
 
         Returns:
             Code values, [rows, columns, 3] uint8, or [rows, columns, 4] with straight alpha if no
             style of the stack is opaque.
         """
         mesh = snapshot.mesh
-        paint, layers = (paint_of(snapshot, shares), None) if fading is None else fading.layers()
+        paint, layers = paint_of(snapshot, shares, lay), None
+        if fading is not None:
+            paint, layers = fading.layers()
         return self._canvas.draw(
             vertices=mesh.vertices,
             triangles=mesh.triangles,

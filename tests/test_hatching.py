@@ -16,7 +16,7 @@ from warp_kernels.styles.crosshatching import Crosshatching
 from warp_kernels.styles.drawn import Drawn
 from warp_kernels.styles.flat import Flat
 from warp_kernels.styles.hatching import Hatching
-from warp_kernels.tones.lookup import PAIRS, packed_tones
+from warp_kernels.tones.lookup import PAIRS, packed_tones, softened
 from warp_kernels.tones.tonal_art_map import DARKEST
 
 KINDS = (Hatching, Crosshatching)
@@ -126,7 +126,7 @@ def test_strokes_without_paper_lie_on_what_is_below(kind: type[Drawn], device: s
     np.testing.assert_allclose(over.astype(int), paper, atol=2)
     assert over.std() > 20
     assert bare.shape[2] == 4
-    assert set(np.unique(bare[..., 3])) >= {0, 128, 255}
+    assert set(np.unique(bare[..., 3])) >= {0, 128, 200}
 
 
 @pytest.mark.parametrize("first_id", [0, 1, 2, 5])
@@ -201,12 +201,13 @@ def test_strokes_fade_with_births_and_deaths(device: str) -> None:
 
 
 def test_packed_tones_are_where_shaders_look() -> None:
-    """Each texel with those to the right and below, in a tone and the next darker one."""
+    """Each texel with those to the right and below, in a tone and the next darker one, softened."""
     rng = np.random.default_rng(1)
     tones = np.sort(rng.random((PAIRS + 1, 512, 512), dtype=np.float32), axis=0)[::-1]
     blocks = packed_tones(tones).levels[1].reshape(PAIRS, 128, 64, 2, 4, 8)
     level = blocks.swapaxes(2, 3).reshape(PAIRS, 256, 256, 2, 2, 2)
     half = 255.0 * tones.reshape(PAIRS + 1, 256, 2, 256, 2).mean(axis=(2, 4))
+    half = softened(np.rint(half).astype(np.uint8)).astype(float)
     for below, right, darker in np.ndindex(2, 2, 2):
         wanted = np.roll(half, (-below, -right), axis=(1, 2))[darker : darker + PAIRS]
         assert np.abs(level[..., below, right, darker] - wanted).max() <= 0.51

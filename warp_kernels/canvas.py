@@ -10,8 +10,10 @@ import warp as wp
 from warp_kernels.blend import Coat
 from warp_kernels.device import Device, Phase
 from warp_kernels.gbuffer import record_gbuffer
+from warp_kernels.lay import own_lay
 from warp_kernels.layers import Layers, LayerTables
-from warp_kernels.paint import Paint, shapes_of, to_places
+from warp_kernels.paint import Paint, shapes_of
+from warp_kernels.places import hashes_of, to_places
 from warp_kernels.points import LIST, parts_of_a_pixel
 from warp_kernels.prepare import record_prepare
 from warp_kernels.raster import MAX_SIDE
@@ -60,6 +62,7 @@ class Canvas:
         self._masked, self._followed = len(masked) - len(followed), len(followed)
         self._is_even = all(style.is_even for style in styles) and not masked
         styles = (*styles, *masked)
+        self._lays_strokes = any(style.lays_strokes for style in styles)
         self._prepares = {i: s.prepare for i, s in enumerate(styles) if s.prepare is not None}
         width, height = output
         columns = width * self.samples
@@ -194,6 +197,10 @@ class Canvas:
             write(tables["gradients"], paint.gradients)
             write(tables["limits"], paint.limits)
             write(tables["hashes"], paint.hashes)
+            if self._lays_strokes:
+                lay = own_lay(paint.ids, paint.corners) if paint.lay is None else paint.lay
+                write(tables["lay"], lay.table(found.anchors))
+                write(tables["lay_hashes"], hashes_of(lay.owners))
 
     def _write_layers(self, layers: Layers) -> None:
         """Hand over what shows through."""
@@ -229,6 +236,8 @@ class Canvas:
             "incircles": self._empty((layers, 3), float),
             "lines": self._empty(layers, wp.mat33f),
             "hashes": self._empty(layers, wp.uint32),
+            "lay": self._empty((layers, 4), float),
+            "lay_hashes": self._empty(layers, wp.uint32),
             "prepared": self._empty((len(self._parameters), layers), Numbers),
             "shares": self._empty((layers, max(1, self._followed)), wp.uint8),
         }

@@ -4,7 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from warp_kernels.scene import FRACTION_BITS
+from warp_kernels.lay import Lay, joined_lay
+from warp_kernels.places import FRACTION, hashes_of, to_places
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,6 +27,8 @@ class Paint:
     """Persistent numbers of the triangles, [N] int64."""
     shares: np.ndarray | None = None
     """How much each belongs to every followed region, 0 to 255, [N, R] uint8; None for R = 0."""
+    lay: Lay | None = None
+    """How strokes lie on each; None if they are new on all."""
 
     def of(self, triangles: np.ndarray) -> "Paint":
         """Some of the triangles, by their numbers [M]."""
@@ -37,25 +40,20 @@ class Paint:
             self.corners[triangles],
             self.ids[triangles],
             None if self.shares is None else self.shares[triangles],
+            None if self.lay is None else self.lay.of(triangles),
         )
 
     @property
     def hashes(self) -> np.ndarray:
-        """A number without order for every id, the same on every machine, [N] uint32.
-
-        Source: Steele, Lea & Flood, Fast Splittable Pseudorandom Number Generators (2014): the
-        finalizer of SplitMix64.
-        """
-        z = self.ids.astype(np.uint64) + np.uint64(0x9E3779B97F4A7C15)
-        z = (z ^ (z >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
-        z = (z ^ (z >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
-        return ((z ^ (z >> np.uint64(31))) >> np.uint64(32)).astype(np.uint32)
+        """A number without order for every id, the same on every machine, [N] uint32."""
+        return hashes_of(self.ids)
 
 
 def joined_paint(parts: list[Paint]) -> Paint:
     """Triangles of one colour model and one look, one after the other."""
     curvatures = [part.curvatures for part in parts if part.curvatures is not None]
     shares = [part.shares for part in parts if part.shares is not None]
+    lays = [part.lay for part in parts if part.lay is not None]
     return Paint(
         np.concatenate([part.colors for part in parts]),
         np.concatenate([part.gradients for part in parts]),
@@ -64,12 +62,8 @@ def joined_paint(parts: list[Paint]) -> Paint:
         np.concatenate([part.corners for part in parts]),
         np.concatenate([part.ids for part in parts]),
         np.concatenate(shares) if shares else None,
+        joined_lay(lays) if lays else None,
     )
-
-
-def to_places(positions: np.ndarray) -> np.ndarray:
-    """Positions [px] as places [2^-16 px], int64 of the same shape."""
-    return np.rint(positions * float(1 << FRACTION_BITS)).astype(np.int64)
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,7 +88,7 @@ def shapes_of(corners: np.ndarray) -> Shapes:
     """
     # long rows: numpy is slow where the last axis is a point
     places = to_places(np.ascontiguousarray(corners.reshape(-1, 6).T)).reshape(3, 2, -1)
-    sides = (places[1:] - places[0]) / float(1 << FRACTION_BITS)
+    sides = (places[1:] - places[0]) / FRACTION
     first, second = sides
     # the side across from a corner is its weight: sum(weight * corner) / sum(weight)
     across = [_lengths(*side) for side in (second - first, second, first)]

@@ -64,6 +64,11 @@ class Scene:
     the side to the inside, (x, y) seen from corner 0 [px of the picture], [T]."""
     hashes: wp.array(dtype=wp.uint32)
     """A number without order for every triangle that stays with it from frame to frame, [T]."""
+    lay: wp.array2d(dtype=float)
+    """Direction of every triangle's strokes, and from corner 0 where the centre of the triangle
+    that they were drawn for would be by now [px], [T, 4]."""
+    lay_hashes: wp.array(dtype=wp.uint32)
+    """The hash of that triangle, [T]."""
     prepared: wp.array2d(dtype=Numbers)
     """What styles worked out about every triangle beforehand, [styles, T]."""
     source: wp.array2d(dtype=wp.vec3ub)

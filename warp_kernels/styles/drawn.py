@@ -94,6 +94,7 @@ class Drawn(Style):
     )
 
     prepare: ClassVar[Any] = prepare_strokes
+    lays_strokes: ClassVar[bool] = True
     drawing: ClassVar[Drawing]
     """The strokes."""
 

@@ -55,6 +55,8 @@ class Style:
     """Whether its ink is the same all over a triangle: the shapes of these are then not needed."""
     needs_source: ClassVar[bool] = False
     """Whether the shader looks at the source picture."""
+    lays_strokes: ClassVar[bool] = False
+    """Whether the shader looks at `Scene.lay`: where strokes lie that go on from frame to frame."""
 
     portraits: ClassVar[tuple[str, ...]] = ()
     """Stacks that show it well, such as `paper + circles`, the lowest style first; its name alone

@@ -20,6 +20,10 @@ SMALLEST = 8
 """Side of the coarsest level that is kept: its texels are as wide as the tile has lines."""
 STEPS = 256
 """Positions on a tile are whole numbers of so many steps per texel."""
+SOFTNESS = 0.1
+"""Part of its ink that a texel gives to each of its four neighbours. Between two texels a line
+that is as thin as one would else be half as dark as on one of them: slanted lines would be rows of
+beads, which run along the lines as these move."""
 PAIRS = TONES - 1
 """Pairs of a tone and the next darker one."""
 
@@ -43,7 +47,16 @@ def packed_tones(tones: np.ndarray) -> Texture:
         Levels [PAIRS, side, 8 side] uint8.
     """
     levels = (level for level in Texture.of(tones).levels if level.shape[1] >= SMALLEST)
-    return Texture(tuple(_packed(level) for level in levels))
+    return Texture(tuple(_packed(softened(level)) for level in levels))
+
+
+def softened(level: np.ndarray) -> np.ndarray:
+    """Images of tiles [images, side, side] uint8 with ink that has run a little."""
+    soft = level.astype(np.float64)
+    for axis in (1, 2):
+        beside = np.roll(soft, 1, axis) + np.roll(soft, -1, axis)
+        soft = (1.0 - 2.0 * SOFTNESS) * soft + SOFTNESS * beside
+    return np.rint(soft).astype(np.uint8)
 
 
 def _packed(level: np.ndarray) -> np.ndarray:

@@ -15,7 +15,6 @@ from warp_kernels.scene import (
     color_of,
     full_ink,
     prepared_for,
-    side_of,
 )
 from warp_kernels.texture import LINE, level_of
 from warp_kernels.tones.lookup import STEPS, ink_at, level_for, pair_of
@@ -65,8 +64,6 @@ WHITE = wp.constant(255.0 * 255.0)
 SHARPNESS = wp.constant(0.75)
 """Texels are about this part of an output pixel: at 1 lines lose more contrast than jaggedness,
 at 1/2 four times as many texels pass through the caches."""
-NEEDLE = wp.constant(0.3)
-"""Triangles with a side that is shorter than this part of the next one are needles."""
 BRIGHTEST = wp.constant(5.0)
 """Light of the paper beside coloured pencils, at most, relative to that of the triangle: brighter
 slivers would sparkle in dark triangles."""
@@ -163,40 +160,12 @@ def coloring_of(n: Numbers, color: wp.vec3f) -> Coloring:
 
 
 @wp.func
-def edge_from(scene: Scene, triangle: int, corner: int) -> wp.vec2f:
-    """The edge to the next corner from a corner; 3 is corner 0 again."""
-    side = side_of(scene, triangle, 0)
-    if corner == 1:
-        side = side_of(scene, triangle, 1) - side_of(scene, triangle, 0)
-    if corner == 2:
-        side = -side_of(scene, triangle, 1)
-    return side
-
-
-@wp.func
-def base_edge(scene: Scene, triangle: int) -> wp.vec2f:
-    """Unit vector along the edge that strokes follow, chosen by chance but for ever.
-
-    Source: Lawonn & Guenther, Stylized Image Triangulation (2018), Sec. 5: randomly chosen; Sec.
-        3.5: users turn it, which turns the row of corners here.
-    Deviation: never the short side of a needle, along which strokes would be a row of ticks that
-        turn with every step of its ends; the next side is taken instead.
-    """
-    choice = int((scene.hashes[triangle] >> wp.uint32(24)) % wp.uint32(3))
-    edge = edge_from(scene, triangle, choice)
-    other = edge_from(scene, triangle, choice + 1)
-    if wp.length(edge) < NEEDLE * wp.length(other):
-        edge = other
-    return edge / wp.max(wp.length(edge), 1.0e-6)
-
-
-@wp.func
 def place_of_centre(scene: Scene, triangle: int, seed: float) -> wp.vec2f:
-    """Where a triangle's centre lies on the tile [sides]: anywhere, but for ever.
+    """Where the centre of a triangle with new strokes lies on the tile [sides]: anywhere.
 
     Else triangles that are smaller than a tile would all show the same strokes.
     """
-    number = (scene.hashes[triangle] ^ wp.uint32(seed)) * wp.uint32(747796405)
+    number = (scene.lay_hashes[triangle] ^ wp.uint32(seed)) * wp.uint32(747796405)
     right = float(int(number >> wp.uint32(23)))
     down = float(int((number >> wp.uint32(14)) & wp.uint32(511)))
     return wp.vec2f(right, down) / 512.0
@@ -204,22 +173,18 @@ def place_of_centre(scene: Scene, triangle: int, seed: float) -> wp.vec2f:
 
 @wp.func
 def prepare_strokes(scene: Scene, parameters: StyleParameters, triangle: int) -> Numbers:
-    """Fill `Scene.prepared`.
-
-    Places are counted from the triangle's centre: what is farthest from it moves most when the
-    base edge turns a little.
-    """
+    """Fill `Scene.prepared`."""
     n = parameters.numbers
     coloring = coloring_of(n, color_of(scene, triangle))
     pair = pair_of(coloring.amount)
     level = level_for(n[TEXELS] * scene.pixel * SHARPNESS, parameters.level_count)
     table = level_of(scene, parameters.first_level + level)
     side = table[2]
-    edge = base_edge(scene, triangle)
+    edge = wp.vec2f(scene.lay[triangle, 0], scene.lay[triangle, 1])
     steps = n[TEXELS] * wp.static(float(STEPS)) / float(1 << level)
     across = steps * (edge[0] * n[COSINE] - edge[1] * n[SINE])
     down = steps * (edge[0] * n[SINE] + edge[1] * n[COSINE])
-    centre = (side_of(scene, triangle, 0) + side_of(scene, triangle, 1)) / 3.0
+    centre = wp.vec2f(scene.lay[triangle, 2], scene.lay[triangle, 3])
     place = float(side * STEPS) * place_of_centre(scene, triangle, n[SEED])
     half = wp.static(0.5 * STEPS)
     result = Numbers()
