@@ -1,6 +1,6 @@
 """Beyond the paper: flip, collapse and split where the measured energy says so."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -83,6 +83,8 @@ class Energy:
         mesh = divide_large(mesh, goal.largest_area)
         thin = CALM_SLIVER_HEIGHT if goal.calm else SLIVER_HEIGHT
         mesh = collapse_slivers(mesh, thin, most_rounds=SLIVER_ROUNDS)
+        if goal.unrest is not None:
+            goal = replace(goal, unrest=goal.unrest.passed_on(mesh))
         free = np.ones(mesh.triangle_count, dtype=bool)
         flips = self._flips(mesh, appraiser, goal)
         flips = flips[independent_flips(mesh, flips)]
