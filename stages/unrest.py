@@ -21,7 +21,7 @@ FAINT_ENERGY = 0.1
 """What lacks less than this part of a triangle's mean energy is not worth any trouble."""
 FAINT_CONTRAST = 2.0
 """Contrast below this is noise [code values]."""
-LEAST_SHARE = 0.1
+LEAST_SHARE = 0.12
 """Where less than this part of the triangles boils it is left as it is: that may as well be a
 limb that moves fast, or what was just uncovered, and a frame that is refined anew takes half as
 long again."""
