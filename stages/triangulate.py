@@ -262,6 +262,7 @@ class Triangulator:
         boiling = int(unrest.boiling(mesh).sum())
         renewal = self._approximator.topology.renewal
         for number in range(1, rounds + 1):
+            unrest = unrest.passed_on(mesh)
             more = renewal.count(number / rounds, boiling) - boiling
             goal = self._goal(count + more, calm=True, unrest=unrest)
             mesh = self._approximator.topology.adapt(mesh, self._appraiser, goal)

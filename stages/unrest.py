@@ -21,9 +21,10 @@ FAINT_ENERGY = 0.1
 """What lacks less than this part of a triangle's mean energy is not worth any trouble."""
 FAINT_CONTRAST = 2.0
 """Contrast below this is noise [code values]."""
-LEAST_SHARE = 0.04
+LEAST_SHARE = 0.12
 """Where less than this part of the triangles boils it is left as it is: that may as well be a
-limb that moves fast, or what was just uncovered."""
+limb that moves fast, or what was just uncovered, and a frame that is refined anew takes half as
+long again."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,6 +76,8 @@ class Unrest:
         Args:
             mesh: The mesh after any edits.
         """
+        if np.array_equal(self.vertex_ids, mesh.vertex_ids):
+            return self.values
         places = np.searchsorted(self.vertex_ids, mesh.vertex_ids)
         places = np.minimum(places, len(self.vertex_ids) - 1)
         told = self.vertex_ids[places] == mesh.vertex_ids
@@ -91,6 +94,14 @@ class Unrest:
             values = np.where(counts > 0, sums / np.maximum(counts, 1), values)
             told |= counts > 0
         return values
+
+    def passed_on(self, mesh: Mesh) -> "Unrest":
+        """The same for what has become of the mesh, so that it need not be worked out again.
+
+        Args:
+            mesh: The mesh after any edits.
+        """
+        return Unrest(mesh.vertex_ids, self.at(mesh))
 
     def calm(self, mesh: Mesh) -> np.ndarray:
         """How calm it is at the calmest corner of each triangle [0..1], shape [T].

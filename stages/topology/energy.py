@@ -1,6 +1,6 @@
 """Beyond the paper: flip, collapse and split where the measured energy says so."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -88,6 +88,8 @@ class Energy:
             mesh = press_slivers(mesh, thin, CALM_SLIVER_HEIGHT)
         else:
             mesh = collapse_slivers(mesh, SLIVER_HEIGHT, most_rounds=SLIVER_ROUNDS)
+        if goal.unrest is not None:
+            goal = replace(goal, unrest=goal.unrest.passed_on(mesh))
         free = np.ones(mesh.triangle_count, dtype=bool)
         slivers, turned = self._slivers(mesh, appraiser, goal, free)
         flips = self._flips(mesh, appraiser, goal)
