@@ -19,6 +19,11 @@ SHARERS = 2
 """So many triangles may show the same strokes: a part that was split off goes on with those of the
 whole, but were that all, in the end a few kinds of strokes would cover the picture."""
 
+THIN = 0.2
+"""Triangles lower than this part of their longest side are too thin for strokes across them."""
+ACROSS = 0.5
+"""Cosine of the angle with the longest side from which on strokes run across it."""
+
 
 @dataclass(frozen=True, eq=False)
 class Strokes:
@@ -94,7 +99,7 @@ class Strokes:
         away = planar(lay.places) - (centres - motions.steps)
         directions = _pairs(planar(lay.directions) * motions.turns)
         places = _pairs(centres + motions.turns * away)
-        new = np.flatnonzero(sources < 0)
+        new = np.flatnonzero((sources < 0) | _run_across(mesh.corners, directions))
         own = own_lay(mesh.triangle_ids[new], mesh.corners[new])
         owners = lay.owners
         owners[new], directions[new], places[new] = own.owners, own.directions, own.places
@@ -128,6 +133,23 @@ def _split_from(
     is_inside = ((sides.conj() * away).imag >= 0.0).all(axis=2) & (beside >= 0)
     found = beside[np.arange(len(born)), is_inside.argmax(axis=1)]
     return np.where(is_inside.any(axis=1), found, -1)
+
+
+def _run_across(corners: np.ndarray, directions: np.ndarray) -> np.ndarray:
+    """Where strokes have become the rungs of a ladder, as a triangle became thin; [T] bool.
+
+    Args:
+        corners: Positions [px], [T, 3, 2].
+        directions: Unit vectors along the strokes, [T, 2].
+    """
+    places = planar(corners)
+    sides = np.roll(places, -1, axis=1) - places
+    squares = sides.real**2 + sides.imag**2
+    longest = np.arange(len(sides)), squares.argmax(axis=1)
+    area = np.abs((sides[:, 0].conj() * sides[:, 1]).imag)
+    along = np.abs((sides[longest].conj() * planar(directions)).real)
+    square = squares[longest]
+    return (area < THIN * square) & (along < ACROSS * np.sqrt(square))
 
 
 def _pairs(numbers: np.ndarray) -> np.ndarray:
