@@ -155,7 +155,8 @@ def _convert(job: Job, progress: Progress, *, draws: bool) -> Animated:
         if draws:
             check_drawing(job, info)
         device = Device(job.device, job.threads)
-        attention = Attention(job.foci, info, job.frame_range.step)
+        count = job.triangulate.refine.triangles
+        attention = Attention(job.foci, info, job.frame_range.step, count)
         size = (info.width, info.height)
         maps = [WeightMap(str(m.file), size, job.frame_range, m.strength) for m in job.maps]
         triangulator = triangulator_of(job, size, device)

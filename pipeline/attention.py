@@ -24,6 +24,9 @@ UNIT = 8
 """Weight of a pixel that counts once, so that an eighth can be told; the most is 255."""
 GAIN = 4.0
 """What a map adds where it is 1."""
+SMALL, AMPLE = 12.0, 40.0
+"""Area of a triangle in the mean [px^2] up to which faces add nothing and from which all that they
+can: where triangles are hardly larger than pixels, more of them fit no better."""
 WINDOW = 6
 """Frames before and after one that a map is smoothed over, the nearer the more."""
 
@@ -50,12 +53,15 @@ class Attention:
         members: What counts more; see `stages.focus.resolved`.
         info: The source.
         step: Distance of the frames that are given, in numbers.
+        triangles: How many there will be.
 
     Raises:
         OptionError: If the network that finds faces is missing.
     """
 
-    def __init__(self, members: Sequence[Focus], info: MediaInfo, step: int) -> None:
+    def __init__(
+        self, members: Sequence[Focus], info: MediaInfo, step: int, triangles: int
+    ) -> None:
         self._members = [m for m in members if isinstance(m, Faces | Glance)]
         self._info = info
         self._step = step
@@ -64,6 +70,8 @@ class Attention:
         self.notes: list[str] = []
         """What was found, one sentence each; complete once the last frame was given."""
         self._found = False
+        area = info.width * info.height / max(1, triangles)
+        self._room = min(max((area - SMALL) / (AMPLE - SMALL), 0.0), 1.0)
         self._spelled = spelled(members)
 
     def beside(self, shot_frames: Iterable[ShotFrame]) -> Iterator[ShotFrame]:
@@ -108,8 +116,10 @@ class Attention:
             added = part.added(frame.index)
             if added is None:
                 continue
-            self._found = self._found or isinstance(member, Faces)
-            added = enlarged(np.float32(member.strength) * added, (frame.width, frame.height))
+            strength = member.strength
+            if isinstance(member, Faces):
+                self._found, strength = True, strength * self._room
+            added = enlarged(np.float32(strength) * added, (frame.width, frame.height))
             total = added if total is None else total + added
         if total is None:
             return frame

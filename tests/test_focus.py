@@ -111,7 +111,7 @@ def weights_of(pictures: list[np.ndarray], *members: object, first: int = 0) -> 
     """Weights of the frames of one shot, [N, H, W] in units of a pixel that counts once."""
     height, width = pictures[0].shape[:2]
     info = replace(probe(PORTRAIT), kind="video", width=width, height=height)
-    told = Attention(members or (Faces(),), info, 1).beside(shot_frames(pictures, first))
+    told = Attention(members or (Faces(),), info, 1, 40).beside(shot_frames(pictures, first))
     even = np.full((height, width), UNIT, np.uint8)
     weights = [even if t.frame.weights is None else t.frame.weights for t in told]
     return [one.astype(float) / UNIT for one in weights]
