@@ -18,7 +18,7 @@ from pipeline.shots import AHEAD, ShotFrame, read_cuts
 from stages.flows.passage import Passage
 from stages.flows.view import View
 from stages.frame import Frame
-from stages.media import Decoder, FrameRange, MediaInfo, count_frames, open_decoder
+from stages.media import Decoder, FrameRange, MediaInfo, count_frames, input_pattern, open_decoder
 from warp_kernels.errors import MediaError
 
 BEFORE = AHEAD + 2
@@ -68,10 +68,13 @@ def open_around(job: Job, reached: Reached | None) -> Decoder:
         # what its weights depend on is decoded again as well, but only then: a range that begins
         # inside a shot starts anew there
         first = min(wanted.first, reached.frame) if before else reached.frame
+        wanted = replace(wanted, first=first, last=last)
+        if input_pattern(job.source) is not None:  # whose margin costs no memory, and has gaps
+            margin = (BEFORE + before, AHEAD + after)
+            return open_decoder(job.source, wanted, margin=margin, read=job.read)
         back = wanted.step * min(before, first // wanted.step)
-        wanted = replace(wanted, first=first - back, last=last)
         if back:
-            wanted = replace(wanted, start_time=None)
+            wanted = replace(wanted, first=first - back, start_time=None)
     return open_decoder(job.source, wanted, margin=(BEFORE, AHEAD + after), read=job.read)
 
 

@@ -43,7 +43,7 @@ def solved_arrays(
         MediaError: If a file that an option names cannot be read.
     """
     size = (info.width, info.height)
-    attention = Attention(job.foci, info, 1)
+    attention = Attention(job.foci, info, 1, job.triangulate.refine.triangles)
     maps = [WeightMap(str(m.file), size, job.frame_range, m.strength) for m in job.maps]
     found = prepared(frames, info, attention, maps, job, None, [])
     return solved_frames(found, triangulator, job, None)

@@ -101,6 +101,7 @@ class OutputKeywords(TypedDict, total=False):
     pixel_format: str | None
     encoder_preset: str | None
     audio: bool
+    audio_mode: str
     overwrite: bool
 
 
@@ -130,8 +131,8 @@ def keyword_of(option: Option) -> str:
     Args:
         option: An option of the command line.
     """
-    if option.is_repeatable or option.is_switch:
-        return option.dest
+    if option.is_repeatable or option.is_switch or option.dest == "audio_mode":
+        return option.dest  # audio=False is --no-audio, so --audio has another name
     return option.flag.replace("-", "_")
 
 

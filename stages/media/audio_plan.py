@@ -18,7 +18,7 @@ from stages.media.codecs import Container
 from stages.media.container import DAMAGE, open_container, reason_of
 from warp_kernels.errors import OptionError
 
-MODES = ("auto", "copy", "convert")
+MODES = ("auto", "copy", "aac")
 """What a user may ask for."""
 
 _TRIED_PACKETS = 50
@@ -167,6 +167,10 @@ def _reason_to_convert(stream: AudioStream, container: Container, mode: str) -> 
             f"--audio copy: {container.format} cannot hold {name} audio; write .mkv or leave the "
             "option out"
         )
+    if mode == "aac" and target != "aac":
+        raise OptionError(
+            f"--audio aac: {container.format} holds {target}; write .mp4 or leave the option out"
+        )
     if not held:
         return f"{container.format} cannot hold {name} audio: converted to {target}"
     channels = channels_of(stream.codec_context)
@@ -174,7 +178,7 @@ def _reason_to_convert(stream: AudioStream, container: Container, mode: str) -> 
         usual = _USUAL.get(channels.count)
         if channels.count > 2 and channels.order not in (usual, f"{channels.count} channels"):
             return f"{container.format} cannot state {channels.order}: converted to {_LOSSLESS}"
-    if mode == "convert" and name != target:
+    if mode == "aac" and name != target:
         return f"{name} audio is converted to {target}"
     if name.startswith(_RARELY_PLAYED.get(container.format, ("-",))):
         return (

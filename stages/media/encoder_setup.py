@@ -41,8 +41,8 @@ class EncodeOptions:
     audio_mode: str = field(
         default="auto",
         metadata={
-            "help": "copy carries the source's audio packet by packet, convert makes AAC or Opus "
-            "of it, auto copies what players of the format play",
+            "help": "copy carries the source's audio packet by packet, aac makes AAC of it, auto "
+            "copies what players of the format play",
             "choices": MODES,
             "flag": "audio",
         },
