@@ -27,8 +27,8 @@ class Drawn(Style):
 
     Each triangle is a paper of its own colour that the strokes darken, as in the paper's Fig. 1,
     left; or all are one sheet, or there is none and strokes darken what lies below. They lie in the
-    plane of the picture, so all of them have one width, and they are fixed to the centre and the
-    base edge of their triangle: they move with it and in no other way.
+    plane of the picture, so all of them have one width. In a still they lie along the base edge of
+    their triangle; in a clip they then move with the picture, see `Scene.lay`.
 
     Source: Lawonn & Guenther, Stylized Image Triangulation (2018), Sec. 5; Praun et al., Real-time
         hatching (2001), Sec. 5: blending between tones.
