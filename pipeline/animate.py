@@ -262,6 +262,8 @@ def solved_frames(
     """
     snapshot = None if past is None else past.snapshot
     for step in found:
+        if snapshot is not None and step.before is not None:
+            triangulator.recall(step.before, snapshot)
         if snapshot is None or step.passage is None:
             rng = np.random.default_rng([job.seed, step.frame.index])
             snapshot = triangulator.first(step.frame, job.layout, rng)

@@ -48,6 +48,8 @@ class Step:
     """Number of the frame with which its shot begins."""
     repeats: bool = False
     """Whether picture and weights are those of the frame before."""
+    before: Frame | None = None
+    """The frame before, where an earlier run ended with it; else None."""
 
 
 def open_around(job: Job, reached: Reached | None) -> Decoder:
@@ -110,7 +112,9 @@ def steps(
             passage: Passage | None = None
             if earlier is not None and shot != frame.index and not job.independent:
                 passage = Passage.between(job.flow, earlier, later)
-            yield Step(frame, passage, shot, _repeats(passage, before, frame))
+            goes_on = reached is not None and last == reached.frame and joined
+            repeats = _repeats(passage, before, frame)
+            yield Step(frame, passage, shot, repeats, before if goes_on else None)
             last = frame.index
         before, earlier = frame, later
 

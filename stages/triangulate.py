@@ -144,6 +144,7 @@ class Triangulator:
         self._even = self._bench(weighted=False)
         self._weighted: Bench | None = None
         self._use(self._even)
+        self._solved: Snapshot | None = None  # with energies by the colours that are optimised
         self._fitting = self._workspace
         fitted = options.model
         if drawn is not None and drawn.degree > fitted.degree:
@@ -188,10 +189,10 @@ class Triangulator:
             return self._trial(frame, layout, rng, self._goal(count))
 
         if refine.quality is None:
-            return self._snapshot(frame, attempt(refine.triangles).mesh)
+            return self._solution(frame, attempt(refine.triangles).mesh)
         pixels = frame.pixels.shape[0] * frame.pixels.shape[1]
         mesh = smallest_that_reaches(refine.quality, attempt, least=self._least, pixels=pixels)
-        return self._snapshot(frame, mesh)
+        return self._solution(frame, mesh)
 
     def _load(self, frame: Frame) -> None:
         """Take in a picture: as it is, and with its weights if it has any."""
@@ -211,8 +212,8 @@ class Triangulator:
         Args:
             frame: The frame.
             seed: The previous frame's mesh, carried along by the motion.
-            earlier: The previous frame, by which it is told where the picture boils; None if it
-                does not.
+            earlier: What was given for the previous frame, here or to `recall`: by it is told where
+                the picture boils; None if it does not.
         """
         self._load(frame)
         iterations = self.options.frame_iterations
@@ -220,7 +221,7 @@ class Triangulator:
         each = iterations // (rounds + 1)
         convergence = Convergence(FRAME_SAVING, patience=1)
         spring = SPRING * self._rmse(seed.mesh) ** 2
-        unrest = self._unrest(frame, seed, earlier)
+        unrest = self._unrest(seed, earlier)
         if unrest is not None:
             seed = replace(seed, trust=seed.trust * (1.0 - unrest.values))
         mesh = self._follow(seed.mesh, seed, spring, each, frame.weights)
@@ -234,7 +235,7 @@ class Triangulator:
                 break
             mesh = self._approximator.topology.adapt(mesh, self._appraiser, goal)
             mesh = self._follow(mesh, seed, spring, each, frame.weights)
-        return self._snapshot(frame, self._approximator.within_limits(mesh, goal))
+        return self._solution(frame, self._approximator.within_limits(mesh, goal))
 
     def _renew(
         self,
@@ -280,15 +281,25 @@ class Triangulator:
             self._even.load(frame.pixels)
         return self._snapshot(frame, mesh)
 
-    def _unrest(self, frame: Frame, seed: Carried, earlier: Snapshot | None) -> Unrest | None:
-        """Where the picture boils, if anywhere; told by the colours that snapshots have."""
-        if earlier is None:
+    def recall(self, frame: Frame, snapshot: Snapshot) -> None:
+        """Take up a solution that another run began; `next` goes on from there.
+
+        Args:
+            frame: The last frame that was solved.
+            snapshot: What it became.
+        """
+        self._even.load(self._space.convert(frame.pixels))
+        self._solved = replace(snapshot, energies=self._even.appraiser.energies(snapshot.mesh))
+
+    def _unrest(self, seed: Carried, earlier: Snapshot | None) -> Unrest | None:
+        """Where the picture boils, if anywhere.
+
+        Told by the colours that are optimised: those that are drawn must not decide about a mesh.
+        """
+        solved = self._solved
+        if earlier is None or solved is None or solved.mesh is not earlier.mesh:
             return None
-        if self._fitting is self._even.workspace:
-            return Unrest.between(earlier, seed, self._even.appraiser.energies(seed.mesh))
-        self._fitting.load_image(frame.pixels)
-        place_mesh(self._fitting, seed.mesh)
-        return Unrest.between(earlier, seed, self._fitting.fit()[1])
+        return Unrest.between(solved, seed, self._even.appraiser.energies(seed.mesh))
 
     def _followed_count(self, mesh: Mesh) -> int:
         """How many triangles a later frame shall have; a quality lets their number drift."""
@@ -344,6 +355,12 @@ class Triangulator:
         """What the mesh must be like, with a number of triangles."""
         refine = self.options.refine
         return Goal(count, refine.error, calm, refine.largest_area, unrest)
+
+    def _solution(self, frame: Frame, mesh: Mesh) -> Snapshot:
+        """The snapshot of a mesh that was just optimised, and that the next frame starts from."""
+        snapshot = self._snapshot(frame, mesh)
+        self._solved = replace(snapshot, energies=self._even.appraiser.energies(mesh))
+        return snapshot
 
     def _snapshot(self, frame: Frame, mesh: Mesh) -> Snapshot:
         """Fit the colours to a mesh that was just optimised, by all pixels alike."""

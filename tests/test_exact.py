@@ -60,7 +60,7 @@ def note_solver(device: Device) -> None:
     """Ask for every kernel that solving can need; all changes of topology for one colour model."""
     for model, sums in product(COLOR_MODELS.values(), SUMS):
         Workspace(device, SIZE, model, sums, weighted=model is LINEAR)
-    survey = Survey(Workspace(device, SIZE, CONSTANT), 0.3)
+    survey = Survey(Workspace(device, SIZE, CONSTANT))
     survey.load_topology(np.zeros(3, int), np.zeros(3, int))
     for measured in (survey.flip_gains, survey.collapse_costs, survey.split_gains):
         measured(np.zeros(1, int))

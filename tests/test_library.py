@@ -6,6 +6,7 @@ import subprocess
 import sys
 import typing
 from collections.abc import Sequence
+from fractions import Fraction
 from pathlib import Path
 from types import NoneType
 
@@ -14,7 +15,7 @@ import pytest
 import trimotion
 from pipeline.library.keywords import KEYWORDS, PRESET, TAKEN, Name, keyword_of, options_of
 from pipeline.library.wording import in_keywords
-from pipeline.options import Option, job_options
+from pipeline.options import RANGE_FIELDS, Option, job_options
 from tests.test_cli import USAGE_ERRORS
 
 ROOT = Path(__file__).parents[1]
@@ -124,7 +125,9 @@ def agrees(hint: object, option: Option) -> bool:
         return kinds == {str, Sequence[str]}
     wanted = TYPES.get(declared.kind.removesuffix(" | None"), {str})
     may_be = [wanted, wanted | set(typing.get_args(Name))]
-    if option.group == "range":
+    if declared.kind.startswith("Fraction"):
+        may_be = [{str, float, Fraction}]
+    elif option.declared in RANGE_FIELDS:
         may_be = [{str, int}, {str, float}]
     return (kinds - {NoneType}) in may_be and (NoneType in kinds) == is_optional
 

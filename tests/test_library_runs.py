@@ -14,7 +14,6 @@ import pytest
 import trimotion
 from pipeline.cli import main
 from pipeline.track import TrackReader
-from tests import media_samples as samples
 from tests.tracks import COUNT, CUT, QUICK_FLAGS, rows_of, write_clip
 from warp_kernels.device import Device
 
@@ -67,9 +66,8 @@ def test_solve_render_measure(clip: Path, tmp_path: Path) -> None:
 
 def test_notes_and_warnings_speak_of_keywords(clip: Path, tmp_path: Path) -> None:
     """What was chosen is in the result, without flags; it is equal to itself and frozen."""
-    grey = samples.write_still(tmp_path / "m.png", np.full((64, 96, 3), 200, np.uint8))
-    result = trimotion.animate(clip, tmp_path / "a.png", frames=0, weights=grey, **QUICK)
-    assert any("weights" in note for note in result.notes)
+    result = trimotion.animate(clip, tmp_path / "a.png", frames=0, focus="center", **QUICK)
+    assert any("focus=center" in note for note in result.notes)
     assert not any("--" in note for note in result.notes)
     with pytest.raises(AttributeError):
         result.frames = 3  # type: ignore[misc]

@@ -114,7 +114,7 @@ def test_triangles_without_a_pixel_are_not_black(
         weights = np.arange(WIDTH * HEIGHT, dtype=np.uint8).reshape(HEIGHT, WIDTH)
         frame = replace(frame, weights=weights)
     options = TriangulateOptions(color=model.name, space=space)
-    triangulator = Triangulator(Device(device, 2), (WIDTH, HEIGHT), options, weighted=is_weighted)
+    triangulator = Triangulator(Device(device, 2), (WIDTH, HEIGHT), options)
     snapshot = triangulator.fit(frame, needles())
     np.testing.assert_array_equal(np.flatnonzero(snapshot.counts == 0), NEEDLES)
     for scale in (1, 4):
