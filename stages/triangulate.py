@@ -12,7 +12,7 @@ from stages.blank import color_owners
 from stages.convergence import Convergence
 from stages.frame import Frame
 from stages.layouts import Layout
-from stages.limits import limits_of
+from stages.limits import Limiter
 from stages.mesh import Mesh
 from stages.optimize import OptimizeOptions, load_mesh, optimize, place_mesh
 from stages.quality import FALL, Trial, smallest_that_reaches
@@ -26,7 +26,6 @@ from stages.unrest import Unrest
 from warp_kernels.color_model import CHANNELS, COLOR_MODELS, ColorModel
 from warp_kernels.device import Device
 from warp_kernels.errors import OptionError
-from warp_kernels.extremes import Extremes
 from warp_kernels.solve import SUMS
 from warp_kernels.workspace import Workspace
 
@@ -151,7 +150,7 @@ class Triangulator:
             fitted = drawn
         if fitted is not options.model or options.space != "rgb":
             self._fitting = Workspace(device, size, fitted)
-        self._extremes = Extremes(self._fitting)
+        self._limiter = Limiter(self._fitting)
 
     def _bench(self, *, weighted: bool) -> Bench:
         """Make what pictures with weights, or those without, are worked on with."""
@@ -369,11 +368,8 @@ class Triangulator:
             fitting.load_image(frame.pixels)
         place_mesh(fitting, mesh)
         coefficients, energies, counts = fitting.fit()
+        coefficients, energies, limits = self._limiter.limit(mesh, coefficients, energies)
         owners = color_owners(mesh, counts)
-        limits = None
-        if fitting.model.degree > 0:
-            extremes = self._extremes.measure(mesh.triangle_count)
-            limits = limits_of(mesh, fitting.model, coefficients, extremes)[owners]
         return Snapshot(
             frame_index=frame.index,
             pts=frame.pts,
@@ -383,7 +379,7 @@ class Triangulator:
             coefficients=coefficients[owners],
             energies=energies,
             counts=counts,
-            limits=limits,
+            limits=None if limits is None else limits[owners],
         )
 
 

@@ -43,6 +43,7 @@ from tests.tracks import solve_to, write_clip
 from warp_kernels.color_model import COLOR_MODELS, CONSTANT, ColorModel
 from warp_kernels.device import Device
 from warp_kernels.extremes import Extremes
+from warp_kernels.nearby import LEEWAY
 from warp_kernels.styles import STYLES, Flat, Gradient, Style
 
 WIDTH, HEIGHT = 16, 12
@@ -207,6 +208,43 @@ def test_small_triangles_stay_within_what_is_around(color: str, device: str) -> 
     assert (beside == 0).mean() > 0.1  # what is said here is said of a good part of the picture
     assert away[beside == 0].max() <= SLACK + ROUNDING
     assert (away > 40).mean() < 1e-3  # and of all triangles nearly everywhere
+
+
+@pytest.mark.parametrize("color", COLOR_MODELS)
+@pytest.mark.parametrize("is_weighted", [False, True])
+def test_borders_show_no_third_colour(color: str, is_weighted: bool, device: str) -> None:
+    """Past bug: the mean of a large triangle over a strong border was seen deep on one side of it.
+
+    What is told of the error stays true, and threads change nothing.
+    """
+    picture = np.full((48, 64, 3), (40, 60, 90), dtype=np.uint8)
+    picture[:, 10:] = (180, 170, 100)
+    picture += waves(64, 48) // 16
+    weights = np.arange(48 * 64).reshape(48, 64) % 251 + 1 if is_weighted else None
+    frame = replace(frame_of(picture), weights=None if weights is None else weights.astype("u1"))
+    corners = np.array([[0, 0], [64, 0], [64, 48], [0, 48]], dtype=float)
+    mesh = mesh_of(corners, np.array([[0, 1, 2], [0, 2, 3]]), 64, 48)
+    options = TriangulateOptions(color)
+    shots = []
+    for threads in (1, 3):
+        triangulator = Triangulator(Device(device, threads), (64, 48), options)
+        shots.append(triangulator.fit(frame, mesh))
+    snapshot = shots[0]
+    np.testing.assert_array_equal(snapshot.coefficients, shots[1].coefficients)
+    np.testing.assert_array_equal(snapshot.energies, shots[1].energies)
+    workspace = poisoned_workspace(Device(device, 2), picture, mesh, snapshot.model)
+    coefficients, energies, _ = workspace.fit()
+    best = replace(snapshot, coefficients=coefficients, energies=energies)
+    away = [
+        (outside(drawn(s, style_of(s.model), device), picture, 9) > LEEWAY + ROUNDING).sum()
+        for s in (best, snapshot)
+    ]
+    assert away[0] > 0
+    assert away[1] < away[0]
+    assert (snapshot.energies >= energies - 1e-6).all()
+    shown = drawn(replace(snapshot, limits=None), style_of(snapshot.model), device)
+    told = np.sqrt(np.square(shown - picture.astype(float)).mean())
+    assert snapshot.rmse == pytest.approx(told, rel=0.02)
 
 
 @cache

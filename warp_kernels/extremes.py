@@ -7,7 +7,7 @@ import warp as wp
 
 from warp_kernels.color_model import CHANNELS
 from warp_kernels.device import Phase
-from warp_kernels.raster import column_of, to_fixed, walk_edge
+from warp_kernels.triangle_walk import columns_of, step_down, walk_triangle
 from warp_kernels.workspace import Workspace
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
@@ -26,49 +26,24 @@ def find_extremes(
     # Out:
     extremes_out: wp.array3d(dtype=wp.uint8),
 ):
-    """Walk over one triangle's pixels, between its long edge and the two short ones."""
+    """Walk over one triangle's pixels."""
     triangle = span[0][0] + wp.tid()
     if triangle >= span[0][1]:
         return
     width = pixels.shape[1]
     height = pixels.shape[0]
     corners = triangles[triangle]
-    top = to_fixed(vertices[corners[0]])
-    middle = to_fixed(vertices[corners[1]])
-    bottom = to_fixed(vertices[corners[2]])
-    if middle[1] < top[1]:
-        swap = top
-        top = middle
-        middle = swap
-    if bottom[1] < top[1]:
-        swap = top
-        top = bottom
-        bottom = swap
-    if bottom[1] < middle[1]:
-        swap = middle
-        middle = bottom
-        bottom = swap
-    long = walk_edge(top, bottom, height)
-    short = walk_edge(top, middle, height)
+    walk = walk_triangle(vertices[corners[0]], vertices[corners[1]], vertices[corners[2]], height)
     low = wp.vec3i(255, 255, 255)
     high = wp.vec3i(0, 0, 0)
-    row = long.row_begin
-    while row < long.row_end:
-        if row >= short.row_end:
-            short = walk_edge(middle, bottom, height)
-        long_column = column_of(long.position)
-        short_column = column_of(short.position)
-        column = wp.max(wp.min(long_column, short_column), 0)
-        end = wp.min(wp.max(long_column, short_column), width)
-        while column < end:
-            pixel = pixels[row, column]
+    while walk.row + 1 < walk.end:
+        walk = step_down(walk, height)
+        columns = columns_of(walk, width)
+        for column in range(columns[0], columns[1]):
+            pixel = pixels[walk.row, column]
             value = wp.vec3i(int(pixel[0]), int(pixel[1]), int(pixel[2]))
             low = wp.min(low, value)
             high = wp.max(high, value)
-            column += 1
-        long.position += long.step
-        short.position += short.step
-        row += 1
     for channel in range(3):
         extremes_out[triangle, wp.static(DARKEST), channel] = wp.uint8(low[channel])
         extremes_out[triangle, wp.static(BRIGHTEST), channel] = wp.uint8(high[channel])
