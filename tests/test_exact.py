@@ -97,9 +97,9 @@ class _Faded:
         """The paint does not matter."""
         count = len(self._layers.weights)
         corners = np.zeros((count, 3, 2))
-        paint = Paint(
-            np.zeros((count, 3)), np.zeros((count, 2, 3)), None, corners, np.arange(count)
-        )
+        limits = np.broadcast_to([[[0.0], [255.0]]], (count, 2, 3))
+        colors, slopes = np.zeros((count, 3)), np.zeros((count, 2, 3))
+        paint = Paint(colors, slopes, None, limits, corners, np.arange(count))
         return paint, self._layers
 
 
