@@ -2,9 +2,12 @@
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from stages.appraise import Appraiser
 from stages.convergence import Convergence
 from stages.divide import divide_large
+from stages.mend import divide_torn
 from stages.mesh import Mesh
 from stages.optimize import OptimizeOptions, load_mesh, optimize
 from stages.topology import Goal, Topology
@@ -27,6 +30,9 @@ LAST_TRUST = 0.1
 """Trust region of the last iteration beside the first one's: it shrinks so that vertices settle."""
 LAST_DISPLACEMENT = 0.25
 """Distance of the variants in the last iterations [px]: a whole pixel blurs where an edge lies."""
+
+MENDING_TRUST = 0.5
+"""Trust region beside the first one's where a few triangles were divided at the end."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,6 +108,27 @@ class Approximator:
             if convergence.is_reached(self.workspace.last_energy()):
                 break
         return mesh
+
+    def mended(self, mesh: Mesh, torn: np.ndarray, goal: Goal) -> Mesh:
+        """Divide triangles that no single colour becomes; the rest hardly moves.
+
+        Args:
+            mesh: A mesh that has settled; the result lies in the workspace.
+            torn: Their numbers, [N].
+            goal: What it must be like.
+        """
+        self.appraiser.limit(goal.largest_area)
+        mesh = divide_torn(mesh, torn, self.appraiser)
+        load_mesh(self.workspace, mesh)
+        mesh = optimize(
+            self.workspace,
+            mesh,
+            ROUND,
+            self.options,
+            trust_region=self.options.trust_region * MENDING_TRUST,
+            displacement=LAST_DISPLACEMENT,
+        )
+        return self.within_limits(mesh, goal)
 
     def within_limits(self, mesh: Mesh, goal: Goal) -> Mesh:
         """Divide what has grown beyond the largest area while vertices moved.
