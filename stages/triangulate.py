@@ -37,8 +37,6 @@ FRAME_DISPLACEMENT = 0.75
 one those that fit the picture better."""
 DEAD_BAND = 0.1
 """Steps of later frames below this are not taken [px]: noise must not move what stands still."""
-MENDINGS = 3
-"""Most times that triangles of a first frame are divided which no one colour becomes."""
 FRAME_ROUND = 3
 """Iterations of later frames between two looks at the topology."""
 FRAME_SAVING = 0.0025
@@ -188,25 +186,18 @@ class Triangulator:
             """Approximate the frame with a number of triangles."""
             return self._trial(frame, layout, rng, self._goal(count))
 
+        def torn(mesh: Mesh) -> np.ndarray:
+            """The triangles that no one colour becomes."""
+            self._snapshot(frame, mesh)
+            return self._limiter.torn
+
         if refine.quality is None:
-            return self._mended(self._snapshot(frame, attempt(refine.triangles).mesh), frame)
+            mesh = attempt(refine.triangles).mesh
+            goal = self._goal(mesh.triangle_count)
+            return self._snapshot(frame, self._approximator.mended(mesh, torn, goal))
         pixels = frame.pixels.shape[0] * frame.pixels.shape[1]
         mesh = smallest_that_reaches(refine.quality, attempt, least=self._least, pixels=pixels)
         return self._snapshot(frame, mesh)
-
-    def _mended(self, snapshot: Snapshot, frame: Frame) -> Snapshot:
-        """Divide triangles that no one colour becomes, while that leaves fewer of them."""
-        for _ in range(MENDINGS):
-            torn = self._limiter.torn
-            if not len(torn):
-                break
-            count = snapshot.mesh.triangle_count
-            mesh = self._approximator.mended(snapshot.mesh, torn, self._goal(count))
-            mended = self._snapshot(frame, mesh)
-            if mesh.triangle_count != count or len(self._limiter.torn) >= len(torn):
-                break
-            snapshot = mended
-        return snapshot
 
     def _load(self, frame: Frame) -> None:
         """Take in a picture: as it is, and with its weights if it has any."""
