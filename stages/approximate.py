@@ -1,10 +1,14 @@
 """A still picture, from a layout to an optimised mesh of a wanted number of triangles."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
+
+import numpy as np
 
 from stages.appraise import Appraiser
 from stages.convergence import Convergence
 from stages.divide import divide_large
+from stages.mend import divide_torn
 from stages.mesh import Mesh
 from stages.optimize import OptimizeOptions, load_mesh, optimize
 from stages.topology import Goal, Topology
@@ -27,6 +31,11 @@ LAST_TRUST = 0.1
 """Trust region of the last iteration beside the first one's: it shrinks so that vertices settle."""
 LAST_DISPLACEMENT = 0.25
 """Distance of the variants in the last iterations [px]: a whole pixel blurs where an edge lies."""
+
+MENDINGS = 3
+"""Most times that triangles are divided which no one colour becomes."""
+MENDING_TRUST = 0.5
+"""Trust region beside the first one's where a few triangles were divided at the end."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,6 +111,41 @@ class Approximator:
             if convergence.is_reached(self.workspace.last_energy()):
                 break
         return mesh
+
+    def mended(self, mesh: Mesh, torn: Callable[[Mesh], np.ndarray], goal: Goal) -> Mesh:
+        """Divide triangles that no one colour becomes, while that leaves fewer of them.
+
+        Args:
+            mesh: A mesh that has settled.
+            torn: Tells the numbers of such triangles, [N].
+            goal: What it must be like.
+        """
+        bad = torn(mesh)
+        for _ in range(MENDINGS):
+            if not len(bad):
+                break
+            divided = self._divided(mesh, bad, goal)
+            left = torn(divided)
+            if divided.triangle_count != mesh.triangle_count or len(left) >= len(bad):
+                break
+            mesh, bad = divided, left
+        return mesh
+
+    def _divided(self, mesh: Mesh, torn: np.ndarray, goal: Goal) -> Mesh:
+        """Divide some triangles of a settled mesh; the rest hardly moves."""
+        self.appraiser.limit(goal.largest_area)
+        mesh = divide_torn(mesh, torn, self.appraiser)
+        load_mesh(self.workspace, mesh)
+        trust = self.options.trust_region * MENDING_TRUST
+        mesh = optimize(
+            self.workspace,
+            mesh,
+            ROUND,
+            self.options,
+            trust_region=trust,
+            displacement=LAST_DISPLACEMENT,
+        )
+        return self.within_limits(mesh, goal)
 
     def within_limits(self, mesh: Mesh, goal: Goal) -> Mesh:
         """Divide what has grown beyond the largest area while vertices moved.

@@ -69,6 +69,8 @@ class Limiter:
     def __init__(self, workspace: Workspace) -> None:
         self._workspace = workspace
         self._extremes, self._nearby = Extremes(workspace), Nearby(workspace)
+        self.torn = np.empty(0, dtype=np.int64)
+        """Triangles of the mesh limited last that no one colour becomes, [N]."""
 
     def limit(
         self, mesh: Mesh, coefficients: np.ndarray, energies: np.ndarray
@@ -101,7 +103,7 @@ class Limiter:
         triangle bears it best; the colours stay that leave the fewest such pixels.
         """
         found = self._nearby.measure(coefficients, energies, limits)
-        rows = np.flatnonzero(found.counts)
+        rows = self.torn = np.flatnonzero(found.counts)
         if not len(rows):
             return coefficients, energies
         coefficients, energies, moved = coefficients.copy(), energies.copy(), coefficients.copy()
@@ -117,6 +119,7 @@ class Limiter:
             least = np.minimum(least, found.counts)
             if not least.any():
                 break
+        self.torn = np.flatnonzero(least)
         return coefficients, energies
 
     def _corrections(self, mesh: Mesh, rows: np.ndarray, found: Departures) -> np.ndarray:

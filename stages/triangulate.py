@@ -168,8 +168,7 @@ class Triangulator:
 
     def _use(self, bench: Bench) -> None:
         """Work on this bench from now on."""
-        self._workspace = bench.workspace
-        self._appraiser = bench.appraiser
+        self._workspace, self._appraiser = bench.workspace, bench.appraiser
         self._approximator = bench.approximator
 
     def first(self, frame: Frame, layout: Layout, rng: np.random.Generator) -> Snapshot:
@@ -184,12 +183,19 @@ class Triangulator:
         refine = self.options.refine
 
         def attempt(count: int) -> Trial:
-            """Approximate the frame with a number of triangles."""
+            """Approximate the frame."""
             return self._trial(frame, layout, rng, self._goal(count))
 
+        def torn(mesh: Mesh) -> np.ndarray:
+            """The triangles that no one colour becomes."""
+            self._snapshot(frame, mesh)
+            return self._limiter.torn
+
         if refine.quality is None:
-            return self._solution(frame, attempt(refine.triangles).mesh)
-        pixels = frame.pixels.shape[0] * frame.pixels.shape[1]
+            mesh = attempt(refine.triangles).mesh
+            goal = self._goal(mesh.triangle_count)
+            return self._solution(frame, self._approximator.mended(mesh, torn, goal))
+        pixels = frame.width * frame.height
         mesh = smallest_that_reaches(refine.quality, attempt, least=self._least, pixels=pixels)
         return self._solution(frame, mesh)
 

@@ -16,6 +16,7 @@ from tests.kernel_samples import random_mesh
 from warp_kernels.color_model import COLOR_MODELS, CONSTANT, LINEAR
 from warp_kernels.device import Device, Phase
 from warp_kernels.layers import Layers
+from warp_kernels.nearby import Nearby
 from warp_kernels.paint import Paint
 from warp_kernels.solve import SUMS
 from warp_kernels.styles import STYLES
@@ -64,6 +65,9 @@ def note_solver(device: Device) -> None:
     survey.load_topology(np.zeros(3, int), np.zeros(3, int))
     for measured in (survey.flip_gains, survey.collapse_costs, survey.split_gains):
         measured(np.zeros(1, int))
+    for model in COLOR_MODELS.values():
+        nothing = np.zeros((1, 3, model.term_count)), np.zeros(1), np.zeros((1, 2, 3), np.uint8)
+        Nearby(Workspace(device, SIZE, model)).measure(*nothing)
 
 
 def note_drawing(device: Device) -> None:

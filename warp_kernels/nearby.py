@@ -66,13 +66,19 @@ def range_around(
     result = Range()
     result.low = read(pixels, row, column) - leeway
     result.high = read(pixels, row, column) + leeway
-    for y in range(wp.max(row - NEAR, 0), wp.min(row + NEAR + 1, pixels.shape[0])):
-        for x in range(wp.max(column - NEAR, 0), wp.min(column + NEAR + 1, pixels.shape[1])):
-            value = read(pixels, y, x)
-            result.low = wp.min(result.low, value - leeway)
-            result.high = wp.max(result.high, value + leeway)
-        if farthest(wp.min(wp.max(shown, result.low), result.high), shown) == wp.float64(0.0):
-            break
+    # nearly always a few of them are enough
+    step = int(NEAR)
+    held = bool(False)
+    while step > 0 and not held:
+        for down in range(-NEAR, NEAR + 1, step):
+            y = wp.clamp(row + down, 0, pixels.shape[0] - 1)
+            for right in range(-NEAR, NEAR + 1, step):
+                value = read(pixels, y, wp.clamp(column + right, 0, pixels.shape[1] - 1))
+                result.low = wp.min(result.low, value - leeway)
+                result.high = wp.max(result.high, value + leeway)
+        inside = wp.min(wp.max(shown, result.low), result.high)
+        held = farthest(inside, shown) == wp.float64(0.0)
+        step = step // NEAR
     return result
 
 
@@ -140,17 +146,21 @@ def _kernel(model: ColorModel) -> Any:
         worst = wp.vec3d()
         changes = wp.vec3d()
         squares = wp.float64(0.0)
+        is_told = wp.isinf(energies[triangle])
+        color = color_at(coefficients, triangle, 0, 0)
         for channel in range(3):
             places_out[triangle, channel] = wp.vec2i(0, 0)
         while walk.row + 1 < walk.end:
             walk = step_down(walk, height)
             columns = columns_of(walk, pixels.shape[1])
             for column in range(columns[0], columns[1]):
-                color = color_at(coefficients, triangle, walk.row, column)
+                if wp.static(model.degree > 0):
+                    color = color_at(coefficients, triangle, walk.row, column)
                 value = read(pixels, walk.row, column)
-                squares += wp.dot(color - value, color - value)
-                shown = wp.min(wp.max(color, low), high)
-                if farthest(shown, value) > wp.float64(wp.static(LEEWAY)):
+                if is_told:
+                    squares += wp.dot(color - value, color - value)
+                if farthest(color, value) > wp.float64(wp.static(LEEWAY)):
+                    shown = wp.min(wp.max(color, low), high)
                     near = range_around(pixels, walk.row, column, shown)
                     asked = wp.min(wp.max(shown, near.low), near.high)
                     if farthest(shown, asked) > wp.float64(0.0):
@@ -179,7 +189,7 @@ class Departures:
     places: np.ndarray
     """The column and the row of each of these pixels [px], [T, 3, 2] int."""
     energies: np.ndarray
-    """E(T) of the colours without their limits [code value^2 px], [T]."""
+    """E(T) of the colours without their limits [code value^2 px], [T]; 0 if not asked for."""
 
 
 class Nearby:
@@ -202,7 +212,7 @@ class Nearby:
         Args:
             coefficients: As in a snapshot, [T, 3, K].
             energies: No less than those of what is shown [code value^2 px]; 0 for triangles that
-                shall not be looked at, [T].
+                shall not be looked at, infinite for those whose energies shall be told, [T].
             limits: Least and greatest values that are shown [code values], [T, 2, 3] uint8.
         """
         self._allocate()
