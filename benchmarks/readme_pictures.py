@@ -87,13 +87,17 @@ PICTURES: dict[str, Picture] = {
         [stills(ASTRONAUT, "out/blank.png", "out/smile.png")], 1024, (180, 60, 520, 500), gap=8
     ),
     "focus_clip": Picture(
-        [of("out/blank.mp4", 0, 12, 24), of("out/smiling.mp4", 0, 12, 24)], 512, gap=8, quality=86
+        [of("out/blank.mp4", 10, 36, 62), of("out/smiling.mp4", 10, 36, 62)],
+        512,
+        (0, 13, 512, 384),
+        gap=8,
+        quality=86,
     ),
     "styles": Picture([stills("out/styles.png")], 1200, quality=80),
     "hatching": Picture([of("out/hatching.mp4", 57)], 1120, quality=86),
     "pencils": Picture([of("out/pencils.mp4", 57)], 1120, quality=86),
     "pen_face": Picture([stills("out/pen_face.png")], 760, quality=86),
-    "follow": Picture([of("out/follow.mp4", 2, 12, 28)], 640, (40, 0, 396, 375), 6, 82),
+    "follow": Picture([of("out/follow.mp4", 2, 12, 28)], 667, (31, 0, 396, 375), 6, 82),
     "circles": Picture([stills("out/circles.png")], 760),
     "glass": Picture([of("out/glass.mp4", 57)], 1120, quality=86),
     "lights": Picture([of("out/lights.mp4", 20)], 1120),
