@@ -87,11 +87,7 @@ PICTURES: dict[str, Picture] = {
         [stills(ASTRONAUT, "out/blank.png", "out/smile.png")], 1024, (180, 60, 520, 500), gap=8
     ),
     "focus_clip": Picture(
-        [of("out/blank.mp4", 10, 36, 62), of("out/smiling.mp4", 10, 36, 62)],
-        512,
-        (0, 13, 512, 384),
-        gap=8,
-        quality=86,
+        [of("out/blank.mp4", 10, 36, 62), of("out/smiling.mp4", 10, 36, 62)], 480, gap=8, quality=86
     ),
     "styles": Picture([stills("out/styles.png")], 1200, quality=80),
     "hatching": Picture([of("out/hatching.mp4", 57)], 1120, quality=86),
@@ -100,7 +96,7 @@ PICTURES: dict[str, Picture] = {
     "follow": Picture([of("out/follow.mp4", 2, 12, 28)], 667, (31, 0, 396, 375), 6, 82),
     "circles": Picture([stills("out/circles.png")], 760),
     "glass": Picture([of("out/glass.mp4", 57)], 1120, quality=86),
-    "lights": Picture([of("out/lights.mp4", 20)], 1120),
+    "lights": Picture([of("out/lights.mp4", 0)], 1120),
     "lenses": Picture([of("out/lenses.mp4", 61)], 1120),
 }
 
