@@ -230,7 +230,7 @@ def test_failing_animator_is_closed(frames: list[np.ndarray], tmp_path: Path) ->
     grey = np.full((64, 96, 3), 200, np.uint8)
     for number in range(2):
         samples.write_still(tmp_path / f"w_{number}.png", grey)
-    weights = str(tmp_path / "w_#.png")
+    weights = str(tmp_path / "w_%01d.png")
     with trimotion.Animator((96, 64), weights=weights, **QUICK) as animator:
         with pytest.raises(trimotion.MediaError, match="no weights for frame 2"):
             [animator.feed(pixels) for pixels in frames]
