@@ -117,9 +117,10 @@ def commands() -> list[str]:
 def written_by(command: str) -> str:
     """Give the file that a command writes, `out/shot_####.png` for numbered stills, or ''."""
     words = shlex.split(command)
-    places = [words.index(flag) + 1 for flag in ("-o", "--sheet") if flag in words]
-    named = places or [len(words) - 1 if "python" in words else 0]
-    return words[named[0]]
+    for flag in ("-o", "--sheet"):
+        if flag in words:
+            return words[words.index(flag) + 1]
+    return words[-1] if "python" in words else ""
 
 
 def writes(command: str, file: str) -> bool:
