@@ -4,7 +4,10 @@ from pathlib import Path
 
 import numpy as np
 
+from pipeline.attention import Attention
 from pipeline.member_spec import parse_member
+from pipeline.shots import ShotFrame
+from stages.focus.faces import Faces
 from stages.frame import Frame
 from stages.layouts.importance import Importance
 from stages.media import (
@@ -60,9 +63,13 @@ def draw_sheet(
     source = Path(picture) if picture is not None else SAMPLE
     if picture is None and not SAMPLE.is_file():
         raise OptionError("styles --sheet: there is no sample portrait here; name a picture")
-    check_output(output, probe(source), (WIDTH, WIDTH), EncodeOptions(overwrite=overwrite), ONE)
+    info = probe(source)
+    check_output(output, info, (WIDTH, WIDTH), EncodeOptions(overwrite=overwrite), ONE)
     with open_decoder(source) as decoder:
-        frame = next(decoder)
+        alone = [ShotFrame(next(decoder), opens_shot=True)]
+    # faces count more, as in every other picture
+    (shown,) = Attention([Faces()], info, 1, triangles).beside(alone)
+    frame = shown.frame
     stacks = [stack for name in STYLES for stack in STYLES[name].portraits or (name,)]
     with Device("auto") as device:
         snapshot = _triangulated(frame, device, triangles)
@@ -70,7 +77,7 @@ def draw_sheet(
     sheet = sheet_of(cells, stacks, COLUMNS)
     size = (sheet.shape[1], sheet.shape[0])
     options = EncodeOptions(overwrite=overwrite, audio=False)
-    with open_encoder(output, probe(source), size, options, ONE) as out:
+    with open_encoder(output, info, size, options, ONE) as out:
         out.write(sheet, frame.pts, frame.time_base, frame.index)
 
 

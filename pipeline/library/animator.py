@@ -26,9 +26,10 @@ class Animator:
     The same frames and options give the same triangles, to the bit. A context manager; frames
     come from one thread at a time.
 
-    With `cuts="auto"` a decision about a cut looks at four later frames: `feed` gives a frame
-    back four frames later, and `finish` the last ones. With `cuts="none"` every frame comes back
-    at once, and `new_shot=True` says where a shot begins.
+    With `cuts="auto"` a decision about a cut looks at four later frames, and faces are looked for
+    in every fourth frame: `feed` gives a frame back up to eight frames later, and `finish` the last
+    ones. With `cuts="none", focus="none"` every frame comes back at once, and `new_shot=True` says
+    where a shot begins.
     """
 
     @with_keywords("Animator")
@@ -71,7 +72,7 @@ class Animator:
                 and what comes is like a new clip.
 
         Returns:
-            The frames that are ready, in order; none while a decision about a cut is pending.
+            The frames that are ready, in order; none while a decision is pending.
 
         Raises:
             OptionError: If the array has another size or kind, or the animator is closed.

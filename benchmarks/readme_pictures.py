@@ -1,0 +1,227 @@
+"""Draw the pictures of README again: run the command above each, then put its frames together.
+
+    python benchmarks/readme_pictures.py [NAME ...] [--keep]
+
+Names are those of `docs/images/`; without one all are drawn. Commands are read from README itself;
+those that it leaves unsaid, such as the same with `--focus none`, stand below.
+"""
+
+import argparse
+import itertools
+import os
+import re
+import shlex
+import subprocess
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import cv2
+import numpy as np
+from contact_sheet import read_frames
+
+ROOT = Path(__file__).parents[1]
+IMAGES = ROOT / "docs" / "images"
+
+UNSAID = """
+trimotion render out/rabbit.mtrk -o out/rabbit.mp4
+trimotion animate sample_videos/astronaut.jpg -o out/even.png --triangles 700 --focus none
+trimotion animate sample_videos/astronaut.jpg -o out/blank.png --triangles 700 --scale 2 \\
+    --focus none
+trimotion animate out/portrait.mp4 -o out/blank.mp4 --triangles 500 --focus none
+"""
+"""Commands that pictures need beside those of README."""
+
+BUNNY = "sample_videos/bigbuckbunny.mp4"
+CITY = "sample_videos/city.mp4"
+ASTRONAUT = "sample_videos/astronaut.jpg"
+
+Cell = tuple[str, int]
+"""A file and the frame of it, counted from its first one."""
+
+
+def of(file: str, *frames: int) -> list[Cell]:
+    """A row: frames of one file, side by side."""
+    return [(file, frame) for frame in frames]
+
+
+def stills(*files: str) -> list[Cell]:
+    """A row: one picture a file, side by side."""
+    return [(file, 0) for file in files]
+
+
+@dataclass(frozen=True)
+class Picture:
+    """How a picture is put together."""
+
+    rows: Sequence[Sequence[Cell]]
+    """From top to bottom; those of one picture are equally long."""
+    width: int
+    """Width to which every frame is scaled [px]."""
+    crop: tuple[int, int, int, int] | None = None
+    """What is then cut out of it: left, top, width and height [px]."""
+    gap: int = 4
+    """White between frames [px]."""
+    quality: int = 88
+    """Of the JPEG, 0 to 100."""
+
+
+PICTURES: dict[str, Picture] = {
+    "bigbuckbunny": Picture([of(BUNNY, 0, 37, 74), of("out/rabbit.mp4", 0, 37, 74)], 480),
+    "city": Picture([of(CITY, 20, 60), of("out/city.mp4", 20, 60)], 600),
+    "edges": Picture([of("out/edges.mp4", 37, 74)], 720),
+    "linear": Picture([of("out/linear.mp4", 37, 74)], 720),
+    "astronaut": Picture([stills(ASTRONAUT, "out/poster.png")], 512),
+    "weights": Picture(
+        [stills("docs/images/face_weights.png", "out/even.png", "out/face.png")], 512, gap=8
+    ),
+    "targets": Picture([stills("out/quality.png", "out/area.png")], 512),
+    "preview": Picture(
+        [stills("out/shot_0060.png", "out/shot_0067.png", "out/shot_0074.png")], 480
+    ),
+    "independent": Picture(
+        [of("out/alone.mp4", 0, 1, 2), of("out/followed.mp4", 0, 1, 2)], 1280, (700, 150, 480, 280)
+    ),
+    "focus": Picture(
+        [stills(ASTRONAUT, "out/blank.png", "out/smile.png")], 1024, (180, 60, 520, 500), gap=8
+    ),
+    "focus_clip": Picture(
+        [of("out/blank.mp4", 10, 36, 62), of("out/smiling.mp4", 10, 36, 62)], 480, gap=8, quality=86
+    ),
+    "styles": Picture([stills("out/styles.png")], 1200, quality=80),
+    "hatching": Picture([of("out/hatching.mp4", 57)], 1120, quality=86),
+    "pencils": Picture([of("out/pencils.mp4", 57)], 1120, quality=86),
+    "pen_face": Picture([stills("out/pen_face.png")], 760, quality=86),
+    "follow": Picture([of("out/follow.mp4", 2, 12, 28)], 667, (31, 0, 396, 375), 6, 82),
+    "circles": Picture([stills("out/circles.png")], 760),
+    "glass": Picture([of("out/glass.mp4", 57)], 1120, quality=86),
+    "lights": Picture([of("out/lights.mp4", 0)], 1120),
+    "lenses": Picture([of("out/lenses.mp4", 61)], 1120),
+}
+
+
+def commands() -> list[str]:
+    """Every command that writes to `out/`, those of README first."""
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    blocks = "".join(re.findall(r"```sh\n(.*?)```", text, flags=re.DOTALL))
+    inline = re.findall(r"`(trimotion [^`]*? out/[^`]*)`", text)
+    lines = [
+        *blocks.replace("\\\n", " ").splitlines(),
+        *inline,
+        *UNSAID.replace("\\\n", " ").splitlines(),
+    ]
+    return [line for line in lines if re.search(r"\bout/", line)]
+
+
+def written_by(command: str) -> str:
+    """Give the file that a command writes, `out/shot_####.png` for numbered stills, or ''."""
+    words = shlex.split(command)
+    for flag in ("-o", "--sheet"):
+        if flag in words:
+            return words[words.index(flag) + 1]
+    return words[-1] if "python" in words else ""
+
+
+def writes(command: str, file: str) -> bool:
+    """Tell whether a file is what a command writes."""
+    pattern = re.escape(written_by(command)).replace(r"\#", "[0-9]")
+    return re.fullmatch(pattern, file) is not None
+
+
+def run(command: str) -> None:
+    """Run a command in the root of the repository with the code that lies there."""
+    print(f"$ {command}", flush=True)
+    words = [word for word in shlex.split(command) if word != "PYTHONPATH=."]
+    for old in ROOT.glob(written_by(command).replace("#", "[0-9]")):
+        old.unlink()
+    start = {"trimotion": ["-m", "pipeline.cli"], "python": []}[words[0]]
+    paths = {**os.environ, "PYTHONPATH": str(ROOT)}
+    subprocess.run([sys.executable, *start, *words[1:]], cwd=ROOT, env=paths, check=True)
+
+
+def make(file: str, made: set[str], keep: bool) -> None:
+    """Make a file of `out/`, and before it what its command reads.
+
+    Args:
+        file: From the root of the repository.
+        made: Commands that have run; grows.
+        keep: Whether a file that is there already is good enough.
+    """
+    if not file.startswith("out/") or (keep and (ROOT / file).exists()):
+        return
+    command = next((line for line in commands() if writes(line, file)), None)
+    if command is None:
+        raise ValueError(f"{file}: no command of README writes it; add one to UNSAID")
+    if command in made:
+        return
+    for word in shlex.split(command):
+        if word.startswith("out/") and word != written_by(command):
+            make(word, made, keep)
+    run(command)
+    made.add(command)
+
+
+def look(cell: Cell, picture: Picture) -> np.ndarray:
+    """Read a frame as it stands in the picture.
+
+    Returns:
+        RGB code values [0..255, h x w x 3 uint8].
+    """
+    file, number = cell
+    frames = (pixels for _, pixels in read_frames(ROOT / file))
+    pixels = next(itertools.islice(frames, number, None), None)
+    if pixels is None:
+        raise ValueError(f"{file}: has no frame {number}")
+    size = (picture.width, round(pixels.shape[0] * picture.width / pixels.shape[1]))
+    is_smaller = picture.width < pixels.shape[1]
+    way = cv2.INTER_AREA if is_smaller else cv2.INTER_CUBIC
+    scaled = pixels if size[0] == pixels.shape[1] else cv2.resize(pixels, size, interpolation=way)
+    left, top, width, height = picture.crop or (0, 0, *size)
+    return scaled[top : top + height, left : left + width]
+
+
+def joined(parts: Sequence[np.ndarray], axis: int, gap: int) -> np.ndarray:
+    """Put pictures [h x w x 3] beside (axis 1) or below (axis 0) each other, white between them."""
+    shape = list(parts[0].shape)
+    shape[axis] = gap
+    white = np.full(shape, 255, dtype=np.uint8)
+    spaced = [piece for part in parts for piece in (white, part)][1:]
+    return np.concatenate(spaced, axis=axis)
+
+
+def draw(name: str) -> None:
+    """Put a picture together and store it."""
+    picture = PICTURES[name]
+    rows = [joined([look(cell, picture) for cell in row], 1, picture.gap) for row in picture.rows]
+    pixels = joined(rows, 0, picture.gap)
+    path = IMAGES / f"{name}.jpg"
+    cv2.imwrite(str(path), pixels[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, picture.quality])
+    print(f"{path.relative_to(ROOT)}: {pixels.shape[1]}x{pixels.shape[0]}, {path.stat().st_size}")
+
+
+def main() -> int:
+    """Read the command line and draw."""
+    names = [*PICTURES, "stretch"]
+    parser = argparse.ArgumentParser(description="Draw the pictures of README again.")
+    parser.add_argument("names", nargs="*", metavar="NAME", help=f"of {', '.join(names)}")
+    parser.add_argument("--keep", action="store_true", help="take files of out/ as they are")
+    options = parser.parse_args()
+    unknown = set(options.names) - set(names)
+    if unknown:
+        parser.error(f"{', '.join(sorted(unknown))}: no picture; they are {', '.join(names)}")
+    (ROOT / "out").mkdir(exist_ok=True)
+    made: set[str] = set()
+    for name in options.names or names:
+        if name == "stretch":  # a film, shown as it was made
+            make("out/stretch.gif", made, options.keep)
+            (IMAGES / "stretch.gif").write_bytes((ROOT / "out/stretch.gif").read_bytes())
+            continue
+        for file, _ in (cell for row in PICTURES[name].rows for cell in row):
+            make(file, made, options.keep)
+        draw(name)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
