@@ -13,6 +13,7 @@ from stages.spaces import SPACES
 from stages.triangulate import TriangulateOptions, Triangulator
 from stages.validate import assert_valid
 from tests.kernel_samples import frame_of, noise, waves
+from tests.oracles.coverage import covered_pixels, rounded
 from tests.oracles.oklab import oklab_of
 from warp_kernels.device import Device
 
@@ -38,11 +39,15 @@ def triangulated(picture: np.ndarray, space: str, device: str = "cpu", **others)
     return triangulator.first(frame_of(picture), LAYOUTS["grid"](), np.random.default_rng(0))
 
 
-def rmse_of_means(snapshot: Snapshot, picture: np.ndarray) -> float:
-    """Error of a snapshot's constant colours in RGB, from its moments alone [code values]."""
-    explained = (snapshot.counts * (snapshot.coefficients[:, :, 0] ** 2).sum(axis=1)).sum()
-    left = (picture.astype(float) ** 2).sum() - explained
-    return float(np.sqrt(left / picture.size))
+def rmse_of_colors(snapshot: Snapshot, picture: np.ndarray) -> float:
+    """Error of a snapshot's constant colours in RGB, pixel by pixel [code values]."""
+    height, width = picture.shape[:2]
+    total = 0.0
+    for corners, color in zip(snapshot.mesh.corners, snapshot.coefficients[:, :, 0], strict=True):
+        _, pixels = covered_pixels([rounded(*corner) for corner in corners], width, height)
+        columns, rows = np.array(pixels, dtype=int).reshape(-1, 2).T
+        total += ((picture[rows, columns] - color) ** 2).sum()
+    return float(np.sqrt(total / picture.size))
 
 
 @pytest.mark.parametrize("size", SIZES)
@@ -116,7 +121,7 @@ def test_every_space_draws_rgb(name: str, color: str, device: str) -> None:
     assert_valid(snapshot.mesh)
     assert snapshot.model.name == color
     if color == "constant":
-        assert snapshot.rmse == pytest.approx(rmse_of_means(snapshot, picture), rel=1e-6)
+        assert snapshot.rmse == pytest.approx(rmse_of_colors(snapshot, picture), rel=1e-6)
     mean = picture.reshape(-1, 3).mean(axis=0)
     assert snapshot.rmse < 0.6 * np.sqrt(((picture - mean) ** 2).mean())
 
