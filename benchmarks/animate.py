@@ -19,22 +19,22 @@ from typing import Any
 
 from timing import machine, program, table
 
-import pipeline.animate
+import pipeline.loop.animate
 from pipeline.job import Job
 from pipeline.progress import Progress
 from stages.flows.dis import Dis
 from stages.media import EncodeOptions, FrameRange
-from stages.media.decode import Decoder
-from stages.media.encode import Encoder
-from stages.refine import RefineOptions
+from stages.media.reading.decode import Decoder
+from stages.media.writing.encode import Encoder
 from stages.render import Renderer
+from stages.topology.refine import RefineOptions
 from stages.triangulate import TriangulateOptions, Triangulator
 
 DEFAULT_CLIP = Path(__file__).parents[1] / "sample_videos" / "bigbuckbunny.mp4"
 WATCHED: tuple[tuple[str, type | ModuleType, str], ...] = (
     ("decode", Decoder, "__next__"),
     ("flow", Dis, "estimate"),
-    ("advect", pipeline.animate, "advect"),
+    ("advect", pipeline.loop.animate, "advect"),
     ("triangulate, first", Triangulator, "first"),
     ("triangulate, next", Triangulator, "next"),
     ("render", Renderer, "render"),
@@ -120,11 +120,11 @@ def main() -> None:
             device=options.device,
             threads=options.threads,
         )
-        pipeline.animate.animate(job, Progress())
+        pipeline.loop.animate.animate(job, Progress())
         start_memory = peak_memory()
         job = Job(**{**vars(job), "frame_range": options.frames})
         with Watch() as watch:
-            done = pipeline.animate.animate(job, Progress())
+            done = pipeline.loop.animate.animate(job, Progress())
     print(f"{machine()}; {options.clip.name}, {options.triangles} triangles, {options.color}\n")
     print(f"{done.frames} frames in {done.seconds:.2f} s: {done.frames / done.seconds:.2f} fps")
     print(f"mean rmse {done.mean_rmse:.2f}")

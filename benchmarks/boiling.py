@@ -27,7 +27,6 @@ import cv2
 import numpy as np
 from timing import DEFAULT_PICTURE, program, table
 
-from stages.advect import advect
 from stages.flows.dis import Dis
 from stages.flows.passage import Passage
 from stages.flows.view import View
@@ -35,11 +34,12 @@ from stages.frame import Frame
 from stages.layouts.importance import Importance
 from stages.metrics import Motion
 from stages.metrics.warp import warped
-from stages.refine import RefineOptions
+from stages.motion.advect import advect
 from stages.render import Renderer
 from stages.snapshot import Snapshot
+from stages.topology.refine import RefineOptions
 from stages.triangulate import TriangulateOptions, Triangulator
-from warp_kernels.device import Device
+from warp_kernels.device.device import Device
 from warp_kernels.styles import Flat
 
 WIDTH, HEIGHT = 320, 360

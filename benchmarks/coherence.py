@@ -22,15 +22,15 @@ import cv2
 import matplotlib as mpl
 from timing import program, table
 
-from pipeline.animate import animate
-from pipeline.flags import size
+from pipeline.compare.measure import measure
+from pipeline.compare.report import FrameFigures, Report
 from pipeline.job import Job
-from pipeline.measure import measure
+from pipeline.loop.animate import animate
+from pipeline.options.flags import size
 from pipeline.progress import Progress
-from pipeline.report import FrameFigures, Report
 from stages.flows.none import NoFlow
 from stages.media import FrameRange, open_decoder
-from stages.refine import RefineOptions
+from stages.topology.refine import RefineOptions
 from stages.triangulate import TriangulateOptions
 
 ROOT = Path(__file__).parents[1]

@@ -15,9 +15,9 @@ import numpy as np
 from stages.layouts.importance import Importance
 from stages.mesh import Mesh
 from stages.optimize import load_mesh
-from warp_kernels.color_model import ColorModel
-from warp_kernels.device import Device
-from warp_kernels.workspace import Workspace
+from warp_kernels.device.device import Device
+from warp_kernels.energy.color_model import ColorModel
+from warp_kernels.energy.workspace import Workspace
 
 DEFAULT_PICTURE = Path(__file__).parents[1] / "sample_videos" / "astronaut.jpg"
 TRUST, REGULARITY = 0.5, 1e-3

@@ -15,12 +15,12 @@ from contextlib import AbstractContextManager, contextmanager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
-from pipeline.crash_watch import watch_for_crashes
-from pipeline.parser import build_parser
+from pipeline.commands.crash_watch import watch_for_crashes
+from pipeline.commands.grammar import build_parser
 
 if TYPE_CHECKING:
-    from pipeline.animate import Animated
     from pipeline.job import Job
+    from pipeline.loop.animate import Animated
     from pipeline.progress import Progress
 
 INTERRUPTED = 130
@@ -64,7 +64,7 @@ def _piped(arguments: argparse.Namespace) -> AbstractContextManager[None]:
     names = (getattr(arguments, key, None) or "" for key in ("source", "file", "output"))
     if not any(name.startswith("-") for name in names):
         return nullcontext()
-    from pipeline.pipes import piped
+    from pipeline.commands.pipes import piped
 
     return piped(arguments)
 
@@ -78,11 +78,11 @@ def run_animate(arguments: argparse.Namespace) -> None:
     job = _job(arguments)
     with _progress(arguments) as progress:
         if job.jobs > 1 or job.followed:
-            from pipeline.parts import animate_in_parts
+            from pipeline.loop.processes import animate_in_parts
 
             _tell(progress, animate_in_parts(job, progress), job.output)
         else:
-            from pipeline.animate import animate
+            from pipeline.loop.animate import animate
 
             _tell(progress, animate(job, progress), job.output)
 
@@ -97,11 +97,11 @@ def run_solve(arguments: argparse.Namespace) -> None:
     job = _job(arguments, track=arguments.output, styles=(), regions=())
     with _progress(arguments) as progress:
         if job.jobs > 1:
-            from pipeline.parts import solve_in_parts
+            from pipeline.loop.processes import solve_in_parts
 
             _tell(progress, solve_in_parts(job, progress), job.track or job.output)
         else:
-            from pipeline.animate import solve
+            from pipeline.loop.animate import solve
 
             _tell(progress, solve(job, progress), job.track or job.output)
 
@@ -114,8 +114,8 @@ def run_render(arguments: argparse.Namespace) -> None:
     """
     source = None if arguments.source is None else Path(arguments.source)
     look = _job(arguments, source=arguments.track, track=None)
-    from pipeline.animate import render
-    from pipeline.render_job import render_job
+    from pipeline.look.render_job import render_job
+    from pipeline.loop.animate import render
     from pipeline.track import TrackReader
 
     with TrackReader(look.source) as track, _progress(arguments) as progress:
@@ -133,8 +133,8 @@ def run_plan(arguments: argparse.Namespace) -> None:
     Args:
         arguments: What the user gave; options that were left out are absent.
     """
-    from pipeline.build_job import build_job
-    from pipeline.plan import plan
+    from pipeline.loop.plan import plan
+    from pipeline.options.build import build_job
 
     found = plan(build_job({**vars(arguments), "output": ""}), arguments.parts)
     print(found.as_json() if arguments.json else found.as_lines())
@@ -146,7 +146,7 @@ def run_join(arguments: argparse.Namespace) -> None:
     Args:
         arguments: What the user gave.
     """
-    from pipeline.join_tracks import join_tracks
+    from pipeline.commands.join import join_tracks
 
     parts = [Path(name) for name in arguments.tracks]
     join_tracks(parts, Path(arguments.output), overwrite=arguments.overwrite)
@@ -158,7 +158,7 @@ def run_info(arguments: argparse.Namespace) -> None:
     Args:
         arguments: What the user gave.
     """
-    from pipeline.info import describe
+    from pipeline.commands.info import describe
 
     print(describe(Path(arguments.file), as_json=arguments.json))
 
@@ -169,8 +169,8 @@ def run_measure(arguments: argparse.Namespace) -> None:
     Args:
         arguments: What the user gave.
     """
-    from pipeline.build_job import frame_range
-    from pipeline.measure import measure
+    from pipeline.compare.measure import measure
+    from pipeline.options.build import frame_range
 
     track = None if arguments.track is None else Path(arguments.track)
     wanted = frame_range(vars(arguments))
@@ -186,11 +186,11 @@ def run_styles(arguments: argparse.Namespace) -> None:
         arguments: What the user gave.
     """
     if arguments.sheet is None:
-        from pipeline.style_list import list_styles
+        from pipeline.commands.style_list import list_styles
 
         print(list_styles(as_json=arguments.json))
         return
-    from pipeline.style_sheet import draw_sheet
+    from pipeline.commands.style_sheet import draw_sheet
 
     triangles, overwrite = arguments.triangles, arguments.overwrite
     draw_sheet(arguments.picture, arguments.sheet, triangles=triangles, overwrite=overwrite)
@@ -216,9 +216,9 @@ def _job(arguments: argparse.Namespace, **fixed: object) -> "Job":
         arguments: What the user gave.
         fixed: What the command decides itself.
     """
-    from pipeline.build_job import build_job
-    from pipeline.options import with_preset
-    from pipeline.preset_file import read_preset
+    from pipeline.options.build import build_job
+    from pipeline.options.command_line import with_preset
+    from pipeline.options.presets import read_preset
 
     given = dict(vars(arguments))
     name = given.pop("preset")
@@ -236,7 +236,7 @@ def _progress(arguments: argparse.Namespace) -> "Progress":
 
 def _tell(progress: "Progress", result: "Animated", output: Path) -> None:
     """Tell what came of a run."""
-    from pipeline.pipes import shown_name
+    from pipeline.commands.pipes import shown_name
     from pipeline.progress import Summary
 
     for note in result.notes:
@@ -256,8 +256,8 @@ def _report(error: BaseException, arguments: argparse.Namespace) -> int:
     Returns:
         The exit code.
     """
+    from warp_kernels.device.memory import MORE_MEMORY, is_limit_near, is_out_of_memory
     from warp_kernels.errors import OptionError, TrimotionError
-    from warp_kernels.memory import MORE_MEMORY, is_limit_near, is_out_of_memory
 
     # Under a limit libraries fail in ways of their own, and options that would fit do not.
     if isinstance(error, OptionError) and is_limit_near():

@@ -21,10 +21,10 @@ from stages.focus import Focus, resolved
 from stages.focus.picture import Picture
 from stages.layouts import Layout
 from stages.layouts.importance import Importance
+from stages.masks.regions import Region
 from stages.media import EncodeOptions, FrameRange, ReadOptions
-from stages.regions import Region
 from stages.triangulate import TriangulateOptions
-from warp_kernels.color_model import CONSTANT, LINEAR, ColorModel
+from warp_kernels.energy.color_model import CONSTANT, LINEAR, ColorModel
 from warp_kernels.errors import OptionError
 from warp_kernels.raster import MAX_SIDE
 from warp_kernels.styles import Flat, Gradient, Style

@@ -5,8 +5,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from stages.mesh import Mesh
+from warp_kernels.energy.workspace import DISPLACEMENT, Workspace
 from warp_kernels.errors import OptionError
-from warp_kernels.workspace import DISPLACEMENT, Workspace
 
 
 @dataclass(frozen=True)

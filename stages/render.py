@@ -4,15 +4,15 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from stages.fading import Fading
-from stages.gray import read_gray
-from stages.paint import paint_of
+from stages.look.fading import Fading
+from stages.look.paint import paint_of
+from stages.masks.gray import read_gray
 from stages.snapshot import Snapshot
-from warp_kernels.canvas import Canvas
-from warp_kernels.device import Device
+from warp_kernels.device.device import Device
+from warp_kernels.drawing.canvas import Canvas
 from warp_kernels.errors import OptionError
-from warp_kernels.lay import Lay
 from warp_kernels.raster import MAX_SIDE
+from warp_kernels.scene.stroke_lay import Lay
 from warp_kernels.styles import Style
 
 

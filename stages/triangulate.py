@@ -4,30 +4,30 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from stages.advect import Carried
-from stages.appraise import Appraiser
-from stages.approximate import Approximator
-from stages.bench import Bench
-from stages.blank import color_owners
-from stages.convergence import Convergence
 from stages.frame import Frame
 from stages.layouts import Layout
-from stages.limits import Limiter
 from stages.mesh import Mesh
+from stages.motion.advect import Carried
+from stages.motion.boiling import Unrest
+from stages.motion.springs import springs_of
 from stages.optimize import OptimizeOptions, load_mesh, optimize, place_mesh
-from stages.quality import FALL, Trial, smallest_that_reaches
-from stages.refine import RefineOptions
 from stages.snapshot import Snapshot
+from stages.solve.approximate import Approximator
+from stages.solve.bench import Bench
+from stages.solve.color_limits import Limiter
+from stages.solve.color_owners import color_owners
+from stages.solve.convergence import Convergence
+from stages.solve.quality import FALL, Trial, smallest_that_reaches
 from stages.spaces import SPACES
-from stages.springs import springs_of
 from stages.topology import TOPOLOGIES, Goal
+from stages.topology.appraise import Appraiser
 from stages.topology.goal import SLIVER_HEIGHT
-from stages.unrest import Unrest
-from warp_kernels.color_model import CHANNELS, COLOR_MODELS, ColorModel
-from warp_kernels.device import Device
+from stages.topology.refine import RefineOptions
+from warp_kernels.device.device import Device
+from warp_kernels.energy.color_model import CHANNELS, COLOR_MODELS, ColorModel
+from warp_kernels.energy.variant_energies import SUMS
+from warp_kernels.energy.workspace import Workspace
 from warp_kernels.errors import OptionError
-from warp_kernels.solve import SUMS
-from warp_kernels.workspace import Workspace
 
 SPRING = 39.0
 """Strength of the temporal term where the motion is certain, as a multiple of the mean squared

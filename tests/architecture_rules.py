@@ -24,10 +24,10 @@ IMPORT_HOMES = {
         "stages/focus",
         "stages/layouts",
         "stages/metrics",
-        "stages/sheet",
+        "stages/look/sheet",
         "stages/spaces",
     ),
-    "av": ("stages/media", "stages/decode", "stages/encode"),
+    "av": ("stages/media",),
     "argparse": ("pipeline/",),
     "sqlite3": ("pipeline/",),
     "tomllib": ("pipeline/",),
@@ -38,7 +38,7 @@ IMPORT_HOMES = {
 RUNTIME_PACKAGES = frozenset({"warp", "numpy", "scipy", "cv2", "av", "tqdm"})
 """Import names of the run-time dependencies."""
 
-ALLOCATING_FILES = frozenset({"warp_kernels/workspace.py", "warp_kernels/device.py"})
+ALLOCATING_FILES = frozenset({"warp_kernels/energy/workspace.py", "warp_kernels/device/device.py"})
 """The only files that ask Warp for memory: the arrays of a job come from the workspace or through
 `Device.empty`, which owns beside them the spans of phases and the counters of a team."""
 
@@ -48,7 +48,7 @@ ALLOCATORS = frozenset(
 TYPE_KEYWORDS = frozenset({"dtype", "ndim"})
 """`wp.array` with these alone is a type, not memory."""
 
-WARP_HOMES = frozenset({"warp_kernels/device.py", "warp_kernels/runtime.py"})
+WARP_HOMES = frozenset({"warp_kernels/device/device.py", "warp_kernels/device/runtime.py"})
 """The only files that call Warp while the program runs."""
 WARP_CALLS = ALLOCATORS | {
     *("launch", "launch_tiled", "copy", "init", "synchronize", "synchronize_device"),

@@ -9,7 +9,7 @@ import av
 import numpy as np
 from av.video.reformatter import Interpolation
 
-from stages.media.channels import channels_of
+from stages.media.sound.channels import channels_of
 
 FLAGS = int(Interpolation.BICUBIC | Interpolation.ACCURATE_RND | Interpolation.FULL_CHR_H_INT)
 MILLISECOND = Fraction(1, 1000)

@@ -6,12 +6,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from meshes import HEIGHT, WIDTH, random_mesh, scrambled
 
-from stages.advect import LOWEST, advect
 from stages.flows.field import FlowField
 from stages.flows.passage import Passage
 from stages.flows.view import View
 from stages.layouts.grid import Grid
 from stages.mesh import Mesh
+from stages.motion.advect import LOWEST, advect
 from stages.validate import assert_valid
 
 

@@ -12,18 +12,18 @@ import numpy as np
 import pytest
 from scipy.ndimage import gaussian_filter
 
-import pipeline.animate
-import pipeline.drawing
-from pipeline.animate import Animated, animate
+import pipeline.look.drawing
+import pipeline.loop.animate
 from pipeline.job import Job
+from pipeline.loop.animate import Animated, animate
 from pipeline.progress import Progress
 from sample_videos.make_shapes import CUT_FRAME, FRAME_COUNT
-from stages.advect import Carried
 from stages.frame import Frame
 from stages.layouts import Layout
 from stages.media import FrameRange, open_decoder
-from stages.refine import RefineOptions
+from stages.motion.advect import Carried
 from stages.snapshot import Snapshot
+from stages.topology.refine import RefineOptions
 from stages.triangulate import TriangulateOptions, Triangulator
 from stages.validate import assert_valid
 from tests import media_samples as samples
@@ -67,7 +67,7 @@ def run(job: Job, progress: Progress | None = None) -> Recorded:
     """Run a job and keep its snapshots."""
     kept = type("Kept", (RecordingTriangulator,), {"snapshots": [], "first_frames": []})
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(pipeline.animate, "Triangulator", kept)
+        patch.setattr(pipeline.loop.animate, "Triangulator", kept)
         result = animate(job, progress or Progress())
     for snapshot in kept.snapshots:
         assert_valid(snapshot.mesh)
@@ -262,7 +262,7 @@ def test_failure_anywhere_leaves_nothing(place: str, clip: Path, tmp_path: Path)
         raise RuntimeError("planted")
 
     owners = {
-        "Renderer.render": pipeline.drawing.Renderer,
+        "Renderer.render": pipeline.look.drawing.Renderer,
         "Triangulator.next": Triangulator,
         "Dis.estimate": type(Job(clip, tmp_path / "x.mp4").flow),
     }

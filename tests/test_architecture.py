@@ -85,12 +85,12 @@ PLANTED = [
     ("memory_is_allocated_in_one_place", "warp_kernels/a.py", "x = warp.empty_like(y)"),
     ("warp_is_called_under_its_lock", "warp_kernels/a.py", "with WARP:\n    wp.copy(a, b)"),
     ("warp_is_called_under_its_lock", "stages/a.py", "x = workspace.table.numpy()"),
-    ("warp_is_called_under_its_lock", "warp_kernels/device.py", "wp.launch(k, 1, [], [])"),
-    ("warp_is_called_under_its_lock", "warp_kernels/device.py", "def f(a):\n    a.fill_(1)"),
-    ("warp_is_called_under_its_lock", "warp_kernels/device.py", "with lock:\n    wp.init()"),
+    ("warp_is_called_under_its_lock", "warp_kernels/device/device.py", "wp.launch(k, 1, [], [])"),
+    ("warp_is_called_under_its_lock", "warp_kernels/device/device.py", "def f(a):\n    a.fill_(1)"),
+    ("warp_is_called_under_its_lock", "warp_kernels/device/device.py", "with lock:\n    wp.init()"),
     (
         "warp_is_called_under_its_lock",
-        "warp_kernels/device.py",
+        "warp_kernels/device/device.py",
         "with wp.ScopedCapture(device=d), WARP:\n    pass",
     ),
     (
@@ -112,14 +112,18 @@ PLANTED = [
 
 # (rule, path, source): near a rule's edge, but within it.
 ALLOWED = [
-    ("imports_point_downwards", "pipeline/a.py", "import stages.mesh, warp_kernels.device"),
+    ("imports_point_downwards", "pipeline/a.py", "import stages.mesh, warp_kernels.device.device"),
     ("imports_point_downwards", "stages/flows/a.py", "from . import dis\nfrom ..mesh import Mesh"),
-    ("imports_stay_at_home", "stages/media/source.py", "import av\nimport numpy as np"),
+    ("imports_stay_at_home", "stages/media/reading/source.py", "import av\nimport numpy as np"),
     ("imports_stay_at_home", "stages/layouts/importance.py", "import cv2, scipy.spatial"),
     ("kernels_only_in_warp_kernels", "stages/a.py", "process.launch()\nkernel(3)"),
     ("kernel_files_keep_annotations", "stages/a.py", "from __future__ import annotations"),
     ("kernel_outputs_come_last", "warp_kernels/a.py", KERNEL.format("a, b_out", "b_out[0] = a[0]")),
-    ("memory_is_allocated_in_one_place", "warp_kernels/workspace.py", "wp.zeros(3, dtype=int)"),
+    (
+        "memory_is_allocated_in_one_place",
+        "warp_kernels/energy/workspace.py",
+        "wp.zeros(3, dtype=int)",
+    ),
     (
         "memory_is_allocated_in_one_place",
         "warp_kernels/a.py",
@@ -133,12 +137,12 @@ ALLOWED = [
     ("memory_is_allocated_in_one_place", "stages/a.py", "x = np.zeros(3)"),
     (
         "warp_is_called_under_its_lock",
-        "warp_kernels/device.py",
+        "warp_kernels/device/device.py",
         "with WARP, wp.ScopedCapture(device=d) as c:\n    wp.launch(k, 1)\n    a.fill_(1)",
     ),
     (
         "warp_is_called_under_its_lock",
-        "warp_kernels/device.py",
+        "warp_kernels/device/device.py",
         "def replay(g):\n    wp.capture_launch(g)",
     ),
     (

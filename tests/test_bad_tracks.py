@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from pipeline.cli import main
-from pipeline.plain_values import UnknownNameError, from_plain, to_plain
 from pipeline.track import TrackReader
+from pipeline.track.plain_values import UnknownNameError, from_plain, to_plain
 from stages.layouts.importance import Importance
 from stages.validate import assert_finite, assert_valid
 from tests.bad_tracks import NAMES, bomb, copy_of, discard, map_of, plant
@@ -154,8 +154,8 @@ import numpy as np
 from stages.render import Renderer
 from tests.kernel_samples import noise, random_mesh
 from tests.kernel_samples import snapshot_of
-from warp_kernels.color_model import CONSTANT
-from warp_kernels.device import Device
+from warp_kernels.energy.color_model import CONSTANT
+from warp_kernels.device.device import Device
 from warp_kernels.styles import STYLES
 mesh = random_mesh(96, 64, 40)
 device = Device("cpu", 2)

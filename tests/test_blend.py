@@ -8,18 +8,18 @@ import numpy as np
 import pytest
 
 from pipeline.cli import main
-from stages.correspond import by_vertex_id, kept_triangles
 from stages.edits import flip_edges, flippable, split_triangles
-from stages.fading import Fading
+from stages.look.fading import Fading
 from stages.mesh import Mesh, areas_of
-from stages.overlaps import overlaps
+from stages.motion.correspondence import by_vertex_id, kept_triangles
+from stages.motion.overlaps import overlaps
 from stages.render import Renderer
 from stages.snapshot import Snapshot
 from tests.meshes import HEIGHT, WIDTH, random_mesh, two_triangles
 from tests.snapshots import edited, restless_shot, snapshot_with
 from tests.tracks import write_clip
-from warp_kernels.color_model import LINEAR, QUADRATIC, ColorModel
-from warp_kernels.device import Device
+from warp_kernels.device.device import Device
+from warp_kernels.energy.color_model import LINEAR, QUADRATIC, ColorModel
 from warp_kernels.styles import STYLES, Flat, Gradient, Style
 
 SIZE = (2 * WIDTH, 2 * HEIGHT)

@@ -9,24 +9,24 @@ import numpy as np
 import pytest
 
 import stages.triangulate
-from stages.advect import Carried, advect
 from stages.edits import split_triangles
 from stages.flows.dis import Dis
 from stages.flows.passage import Passage
 from stages.flows.view import View
 from stages.layouts.importance import Importance
 from stages.mesh import Mesh
-from stages.refine import RefineOptions
+from stages.motion.advect import Carried, advect
+from stages.motion.boiling import Unrest
 from stages.snapshot import Snapshot
 from stages.topology import TOPOLOGIES
+from stages.topology.refine import RefineOptions
 from stages.triangulate import TriangulateOptions, Triangulator
-from stages.unrest import Unrest
 from stages.validate import assert_valid
 from tests import media_samples as samples
 from tests.kernel_samples import frame_of, waves
 from tests.meshes import random_mesh
 from tests.tracks import rows_of, solve_to
-from warp_kernels.device import Device
+from warp_kernels.device.device import Device
 
 WIDTH, HEIGHT = 192, 96
 MIDDLE = WIDTH // 2

@@ -15,10 +15,10 @@ import pytest
 
 from pipeline import cli
 from pipeline.cli import main
-from pipeline.options import job_options
+from pipeline.options.command_line import job_options
 from stages.flows import FLOWS
 from stages.layouts import LAYOUTS
-from warp_kernels.color_model import COLOR_MODELS
+from warp_kernels.energy.color_model import COLOR_MODELS
 from warp_kernels.errors import MediaError, OptionError, OutputError, TrackError, TrimotionError
 from warp_kernels.styles import STYLES
 
@@ -120,9 +120,9 @@ def fake_animate(monkeypatch: pytest.MonkeyPatch) -> list:
             frames=2, seconds=0.5, mean_rmse=21.0, warnings=("it breaks off",), notes=("as bt709",)
         )
 
-    fake = types.ModuleType("pipeline.animate")
+    fake = types.ModuleType("pipeline.loop.animate")
     fake.animate = animate
-    monkeypatch.setitem(sys.modules, "pipeline.animate", fake)
+    monkeypatch.setitem(sys.modules, "pipeline.loop.animate", fake)
     return jobs
 
 

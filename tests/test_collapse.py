@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from meshes import random_mesh, scrambled, two_triangles
 
-from stages.collapse import collapse_slivers
 from stages.edits import split_edges, split_triangles
 from stages.mesh import mesh_of
+from stages.topology.collapse_slivers import collapse_slivers
 from stages.validate import assert_valid
 
 

@@ -11,7 +11,7 @@ from PIL import Image, ImageCms
 from test_encode import convert
 
 from stages.media import open_decoder, probe
-from stages.media.color_profile import transform_of, transform_of_primaries
+from stages.media.color.icc_profile import transform_of, transform_of_primaries
 
 CURVES = {
     "linear": icc.table([]),

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from stages.media import EncodeOptions, open_decoder, open_encoder, probe
-from stages.media.hdr import tone_map
+from stages.media.color.hdr import tone_map
 
 SD, HD = (320, 160), (1280, 320)
 

@@ -19,7 +19,7 @@ ENDINGS = {
 
 def run(code: str) -> subprocess.CompletedProcess[str]:
     """Run a program that is watched."""
-    start = "from pipeline.crash_watch import watch_for_crashes as w; w(); "
+    start = "from pipeline.commands.crash_watch import watch_for_crashes as w; w(); "
     command = [sys.executable, "-c", start + code]
     return subprocess.run(command, capture_output=True, text=True, cwd=ROOT)
 

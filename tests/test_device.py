@@ -15,10 +15,10 @@ import warp as wp
 
 from stages.optimize import load_mesh, place_mesh
 from tests.kernel_samples import noise, poisoned_workspace, random_mesh, waves
-from warp_kernels.color_model import COLOR_MODELS, CONSTANT, LINEAR, ColorModel
-from warp_kernels.device import PART, Device, Phase, Team
-from warp_kernels.runtime import driver_problem
-from warp_kernels.workspace import Workspace
+from warp_kernels.device.device import PART, Device, Phase, Team
+from warp_kernels.device.runtime import driver_problem
+from warp_kernels.energy.color_model import COLOR_MODELS, CONSTANT, LINEAR, ColorModel
+from warp_kernels.energy.workspace import Workspace
 
 Replay = Callable[[Team, int], None]
 """`Team.replay`."""
@@ -266,7 +266,7 @@ import os, sys
 import warp as wp
 level, before = wp.config.log_level, dict(os.environ)
 stream = os.fstat(2)
-from warp_kernels.device import Device
+from warp_kernels.device.device import Device
 with Device("cpu", 2) as device:
     array = device.empty(3, int)
     device.clear(array)

@@ -22,7 +22,7 @@ from stages.media import (
     open_encoder,
     probe,
 )
-from stages.media.commit import PendingFile, output_error
+from stages.media.writing.commit import PendingFile, output_error
 from warp_kernels.errors import OptionError, OutputError
 
 WHOLE = FrameRange()
@@ -288,7 +288,7 @@ def test_full_disk_is_an_output_error(clip: Path, monkeypatch: pytest.MonkeyPatc
     def refuse(source: object, target: object) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("stages.media.commit.os.replace", refuse)
+    monkeypatch.setattr("stages.media.writing.commit.os.replace", refuse)
     before = sorted(clip.parent.iterdir())
     with pytest.raises(OutputError, match="no space left"):
         convert(clip, clip.with_name("out.mp4"))

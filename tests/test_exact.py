@@ -13,15 +13,15 @@ import warp as wp
 from stages.render import Renderer
 from stages.snapshot import Snapshot
 from tests.kernel_samples import random_mesh
-from warp_kernels.color_model import COLOR_MODELS, CONSTANT, LINEAR
-from warp_kernels.device import Device, Phase
-from warp_kernels.layers import Layers
-from warp_kernels.nearby import Nearby
-from warp_kernels.paint import Paint
-from warp_kernels.solve import SUMS
+from warp_kernels.device.device import Device, Phase
+from warp_kernels.drawing.layers import Layers
+from warp_kernels.drawing.paint import Paint
+from warp_kernels.energy.color_model import COLOR_MODELS, CONSTANT, LINEAR
+from warp_kernels.energy.nearby_colors import Nearby
+from warp_kernels.energy.topology_survey import Survey
+from warp_kernels.energy.variant_energies import SUMS
+from warp_kernels.energy.workspace import Workspace
 from warp_kernels.styles import STYLES
-from warp_kernels.survey import Survey
-from warp_kernels.workspace import Workspace
 
 SIZE = (64, 48)
 ARITHMETIC = re.compile(r"\b(?:add|sub|mul|fma|mad|div|sqrt|rcp|rsqrt|ex2|lg2)\.[\w.]*f(?:32|64)\b")

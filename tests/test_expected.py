@@ -8,7 +8,7 @@ import media_samples as samples
 import pytest
 
 from pipeline.cli import main
-from pipeline.expected import expected_frames
+from pipeline.loop.expected_frames import expected_frames
 from stages.media import FrameRange, probe
 
 

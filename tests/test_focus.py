@@ -11,17 +11,17 @@ import cv2
 import numpy as np
 import pytest
 
-from pipeline.animate import animate
-from pipeline.attention import UNIT, WINDOW, Attention, reach_of
 from pipeline.cli import main
-from pipeline.face_tracks import CARRIED, MEMORY, SPACING, FaceTracks
 from pipeline.job import Job
-from pipeline.member_spec import parse_member
-from pipeline.parts import solve_in_parts
-from pipeline.plain_values import from_plain, to_plain
+from pipeline.loop.animate import animate
+from pipeline.loop.attention import UNIT, WINDOW, Attention, reach_of
+from pipeline.loop.face_tracks import CARRIED, MEMORY, SPACING, FaceTracks
+from pipeline.loop.processes import solve_in_parts
+from pipeline.loop.shots import ShotFrame
+from pipeline.options.members import parse_member
 from pipeline.progress import Progress
-from pipeline.shots import ShotFrame
 from pipeline.track import TrackReader
+from pipeline.track.plain_values import from_plain, to_plain
 from stages.focus import FOCI, Glance, resolved, spelled
 from stages.focus.blazeface import MODEL, BlazeFace
 from stages.focus.center import Center
@@ -37,7 +37,7 @@ from stages.triangulate import Triangulator
 from tests import media_samples as samples
 from tests.kernel_samples import frame_of
 from tests.tracks import QUICK, rows_of, solve_to
-from warp_kernels.device import Device
+from warp_kernels.device.device import Device
 from warp_kernels.errors import OptionError
 
 PORTRAIT = Path(__file__).parents[1] / "sample_videos" / "astronaut.jpg"

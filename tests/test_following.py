@@ -8,26 +8,26 @@ import cv2
 import numpy as np
 import pytest
 
-from pipeline import parts
-from pipeline.animate import animate
 from pipeline.cli import main
 from pipeline.job import Job
-from pipeline.member_spec import parse_region
-from pipeline.own_frames import check_followed
+from pipeline.look.region_masks import check_followed
+from pipeline.loop import processes as parts
+from pipeline.loop.animate import animate
+from pipeline.options.members import parse_region
 from pipeline.progress import Progress
 from pipeline.track import TrackReader
-from stages.correspond import kept_triangles
 from stages.edits import flip_edges, split_triangles
-from stages.following import inherited, under_mask
+from stages.masks.regions import Region
 from stages.media import probe
-from stages.regions import Region
+from stages.motion.correspondence import kept_triangles
+from stages.motion.inherit_regions import inherited, under_mask
 from stages.render import Renderer
 from tests import media_samples as samples
 from tests.golden_images import write_png
 from tests.meshes import HEIGHT, WIDTH, random_mesh, two_triangles
 from tests.snapshots import restless_shot, snapshot_with
 from tests.tracks import COUNT, CUT, write_clip
-from warp_kernels.device import Device
+from warp_kernels.device.device import Device
 from warp_kernels.errors import OptionError
 from warp_kernels.styles import STYLES, Flat
 

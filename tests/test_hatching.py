@@ -6,18 +6,18 @@ import numpy as np
 import pytest
 
 from stages.edits import flip_edges, turn_base_edge
-from stages.fading import Fading
+from stages.look.fading import Fading
 from stages.mesh import Mesh, mesh_of
 from stages.render import Renderer
 from tests.snapshots import snapshot_with
-from warp_kernels.device import Device
+from warp_kernels.device.device import Device
 from warp_kernels.errors import OptionError
 from warp_kernels.styles.crosshatching import Crosshatching
 from warp_kernels.styles.drawn import Drawn
 from warp_kernels.styles.flat import Flat
 from warp_kernels.styles.hatching import Hatching
-from warp_kernels.tones.lookup import PAIRS, packed_tones, softened
-from warp_kernels.tones.tonal_art_map import DARKEST
+from warp_kernels.styles.tones.lookup import PAIRS, packed_tones, softened
+from warp_kernels.styles.tones.tonal_art_map import DARKEST
 
 KINDS = (Hatching, Crosshatching)
 BLACK_ON_WHITE = {"ink": "#000", "paper": "#fff"}

@@ -7,7 +7,6 @@ from hypothesis import strategies as st
 from meshes import random_mesh, scrambled, triangle_set, two_triangles
 from scipy.spatial import Delaunay
 
-from stages.correspond import kept_triangles
 from stages.edits import (
     flip_edges,
     flippable,
@@ -18,6 +17,7 @@ from stages.edits import (
 )
 from stages.layouts import LAYOUTS
 from stages.mesh import Mesh, mesh_of, twins_of
+from stages.motion.correspondence import kept_triangles
 from stages.validate import assert_valid
 
 

@@ -15,7 +15,7 @@ import pytest
 import trimotion
 from pipeline.library.keywords import KEYWORDS, PRESET, TAKEN, Name, keyword_of, options_of
 from pipeline.library.wording import in_keywords
-from pipeline.options import RANGE_FIELDS, Option, job_options
+from pipeline.options.command_line import RANGE_FIELDS, Option, job_options
 from tests.test_cli import USAGE_ERRORS
 
 ROOT = Path(__file__).parents[1]

@@ -15,7 +15,7 @@ import trimotion
 from pipeline.cli import main
 from pipeline.track import TrackReader
 from tests.tracks import COUNT, CUT, QUICK_FLAGS, rows_of, write_clip
-from warp_kernels.device import Device
+from warp_kernels.device.device import Device
 
 QUICK: trimotion.SolveKeywords = {"iterations": 8, "frame_iterations": 4, "triangles": 40}
 

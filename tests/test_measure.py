@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from pipeline.cli import main
-from pipeline.measure import measure
-from pipeline.resample import resample
+from pipeline.compare.measure import measure
+from pipeline.compare.resample import resample
 from stages.media import FrameRange
 from warp_kernels.errors import MediaError, TrimotionError
 

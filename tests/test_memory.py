@@ -6,11 +6,11 @@ import sys
 import pytest
 from test_encode import ROOT
 
-from warp_kernels.memory import is_out_of_memory
+from warp_kernels.device.memory import is_out_of_memory
 
 SCRIPT = """
 import resource
-from warp_kernels.memory import is_limit_near, is_out_of_memory
+from warp_kernels.device.memory import is_limit_near, is_out_of_memory
 limit = 2**29
 resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
 assert not is_limit_near()

@@ -7,13 +7,13 @@ import cv2
 import numpy as np
 import pytest
 
-from pipeline.build_job import build_job
-from pipeline.declared import NO_DEFAULT, declared_fields, declared_registry, own_first
+from pipeline.commands.grammar import build_parser
 from pipeline.job import Job
-from pipeline.member_spec import parse_member
-from pipeline.options import job_options, with_preset
-from pipeline.parser import build_parser
-from pipeline.preset_file import read_preset, shipped_presets
+from pipeline.options.build import build_job
+from pipeline.options.command_line import job_options, with_preset
+from pipeline.options.declared import NO_DEFAULT, declared_fields, declared_registry, own_first
+from pipeline.options.members import parse_member
+from pipeline.options.presets import read_preset, shipped_presets
 from stages.flows import FLOWS
 from stages.flows.dis import Dis
 from stages.layouts import LAYOUTS
@@ -86,7 +86,7 @@ def test_declaration_that_is_not_literal_is_imported(tmp_path: Path, monkeypatch
     """A computed default costs time, not truth."""
     source = "from dataclasses import dataclass\n@dataclass\nclass A:\n    x: int = 2 ** 4\n"
     (tmp_path / "computed.py").write_text(source)
-    monkeypatch.setattr("pipeline.declared.ROOT", tmp_path)
+    monkeypatch.setattr("pipeline.options.declared.ROOT", tmp_path)
     monkeypatch.syspath_prepend(tmp_path)
     (field,) = declared_fields("computed", "A")
     assert (field.name, field.kind, field.default) == ("x", "int", 16)

@@ -10,7 +10,7 @@ import pytest
 from PIL import Image, ImageOps
 from test_encode import convert
 
-from pipeline.info import describe
+from pipeline.commands.info import describe
 from stages.media import open_decoder, probe
 from stages.media.orientation import Orientation, orientation_from
 

@@ -29,7 +29,7 @@ from benchmarks.paper.study import Study
 from stages.layouts.grid import Grid
 from stages.validate import assert_valid
 from tests.architecture_rules import markdown_links
-from warp_kernels.device import Device
+from warp_kernels.device.device import Device
 
 TINY = {
     "fig3": StartLayout(triangles=30),

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import warp as wp
 
-from warp_kernels.device import Device
-from warp_kernels.points import (
+from warp_kernels.device.device import Device
+from warp_kernels.drawing.sample_points import (
     COUNT,
     DOWN,
     LANES,

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from stages.quality import PRECISION, Trial, smallest_that_reaches
+from stages.solve.quality import PRECISION, Trial, smallest_that_reaches
 from warp_kernels.errors import OptionError
 
 PIXELS = 512 * 512

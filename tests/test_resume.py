@@ -10,11 +10,11 @@ from pathlib import Path
 
 import pytest
 
-from pipeline.animate import animate
 from pipeline.cli import main
 from pipeline.job import Job
-from pipeline.parts import animate_in_parts, solve_in_parts
-from pipeline.plan import plan
+from pipeline.loop.animate import animate
+from pipeline.loop.plan import plan
+from pipeline.loop.processes import animate_in_parts, solve_in_parts
 from pipeline.progress import Progress
 from pipeline.track import TrackReader, join
 from stages.media import FrameRange

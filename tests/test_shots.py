@@ -5,7 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pipeline.shots import read_cuts, with_shots
+from pipeline.loop.shots import with_shots
+from pipeline.track.cuts import read_cuts
 from tests.kernel_samples import frame_of, noise, waves
 from warp_kernels.errors import MediaError, OptionError
 

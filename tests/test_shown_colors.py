@@ -14,36 +14,36 @@ from scipy.ndimage import maximum_filter, minimum_filter
 
 from pipeline.track import TrackReader, TrackWriter
 from pipeline.track.join import join
-from stages.advect import advect
-from stages.appraise import Appraiser
-from stages.blank import color_owners
-from stages.collapse import collapse_slivers
 from stages.edits import collapse_edges, flip_edges
-from stages.fading import Fading
 from stages.flows import FLOWS
 from stages.flows.passage import Passage
 from stages.flows.view import View
-from stages.following import inherited
 from stages.layouts.importance import Importance
-from stages.limits import SLACK
+from stages.look.fading import Fading
 from stages.mesh import Mesh, mesh_of
-from stages.refine import RefineOptions
+from stages.motion.advect import advect
+from stages.motion.inherit_regions import inherited
 from stages.render import Renderer
 from stages.snapshot import Snapshot
+from stages.solve.color_limits import SLACK
+from stages.solve.color_owners import color_owners
 from stages.spaces import SPACES
 from stages.topology import Goal
+from stages.topology.appraise import Appraiser
+from stages.topology.collapse_slivers import collapse_slivers
 from stages.topology.energy import Energy
-from stages.topology.slivers import AFFORDED, sliver_changes
+from stages.topology.followed_slivers import AFFORDED, sliver_changes
+from stages.topology.refine import RefineOptions
 from stages.triangulate import TriangulateOptions, Triangulator
 from stages.validate import assert_valid
 from tests.kernel_samples import frame_of, noise, poisoned_workspace, random_mesh, waves
 from tests.meshes import scrambled
 from tests.oracles.coverage import covered_pixels, rounded
 from tests.tracks import solve_to, write_clip
-from warp_kernels.color_model import COLOR_MODELS, CONSTANT, ColorModel
-from warp_kernels.device import Device
-from warp_kernels.extremes import Extremes
-from warp_kernels.nearby import LEEWAY
+from warp_kernels.device.device import Device
+from warp_kernels.energy.color_extremes import Extremes
+from warp_kernels.energy.color_model import COLOR_MODELS, CONSTANT, ColorModel
+from warp_kernels.energy.nearby_colors import LEEWAY
 from warp_kernels.styles import STYLES, Flat, Gradient, Style
 
 WIDTH, HEIGHT = 16, 12

@@ -8,15 +8,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pipeline.job import Job
-from pipeline.smooth import Smoother, reach_of
-from pipeline.take import Take
-from stages.correspond import kept_vertices
+from pipeline.look.drawn_frame import Take
+from pipeline.look.smooth import Smoother, reach_of
 from stages.mesh import Mesh
+from stages.motion.correspondence import kept_vertices
 from stages.snapshot import Snapshot, with_origins
 from stages.validate import assert_valid
 from tests.meshes import random_mesh, two_triangles
 from tests.snapshots import restless_shot, snapshot_with
-from warp_kernels.color_model import CONSTANT, LINEAR, ColorModel
+from warp_kernels.energy.color_model import CONSTANT, LINEAR, ColorModel
 from warp_kernels.errors import OptionError
 
 

@@ -18,9 +18,9 @@ from tests.kernel_samples import (
 from tests.oracles.coverage import Pixel, covered_pixels, rounded
 from tests.oracles.fit import best_fit, exact_energy, is_singular
 from tests.oracles.variants import variants
-from warp_kernels.color_model import COLOR_MODELS, CONSTANT, LINEAR, QUADRATIC, ColorModel
-from warp_kernels.device import Device
-from warp_kernels.fit import READABLE
+from warp_kernels.device.device import Device
+from warp_kernels.energy.color_model import COLOR_MODELS, CONSTANT, LINEAR, QUADRATIC, ColorModel
+from warp_kernels.energy.fit import READABLE
 from warp_kernels.raster import MAX_SIDE
 
 ENERGY_TOLERANCE = 1e-5

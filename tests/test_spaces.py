@@ -7,15 +7,15 @@ import numpy as np
 import pytest
 
 from stages.layouts import LAYOUTS
-from stages.refine import RefineOptions
 from stages.snapshot import Snapshot
 from stages.spaces import SPACES
+from stages.topology.refine import RefineOptions
 from stages.triangulate import TriangulateOptions, Triangulator
 from stages.validate import assert_valid
 from tests.kernel_samples import frame_of, noise, waves
 from tests.oracles.coverage import covered_pixels, rounded
 from tests.oracles.oklab import oklab_of
-from warp_kernels.device import Device
+from warp_kernels.device.device import Device
 
 SIZES = [(1, 1), (1, 7), (5, 1), (13, 17), (64, 33)]
 GREYS = np.repeat(np.arange(256, dtype=np.uint8)[None, :, None], 3, axis=2)

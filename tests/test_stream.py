@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from pipeline.stream import Behind, ahead
+from pipeline.loop.threads import Behind, ahead
 
 NAMES = {"trimotion-ahead", "trimotion-behind"}
 

@@ -8,14 +8,14 @@ import pytest
 
 from pipeline.cli import main
 from stages.edits import flip_edges, flippable, split_triangles
+from stages.look.strokes import SHARERS, THIN, Strokes
 from stages.mesh import Mesh, mesh_of
 from stages.render import Renderer
-from stages.strokes import SHARERS, THIN, Strokes
 from tests.meshes import HEIGHT, WIDTH, random_mesh
 from tests.snapshots import edited, snapshot_with
 from tests.tracks import write_clip
-from warp_kernels.device import Device
-from warp_kernels.lay import Lay
+from warp_kernels.device.device import Device
+from warp_kernels.scene.stroke_lay import Lay
 from warp_kernels.styles.hatching import Hatching
 
 QUICK = ("--iterations", "2", "--frame-iterations", "4", "--triangles", "60")

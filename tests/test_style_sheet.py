@@ -8,10 +8,10 @@ import cv2
 import numpy as np
 import pytest
 
-from pipeline import style_sheet
 from pipeline.cli import main
-from pipeline.member_spec import parse_member
-from stages.sheet import CAPTION, GAP, sheet_of
+from pipeline.commands import style_sheet
+from pipeline.options.members import parse_member
+from stages.look.sheet import CAPTION, GAP, sheet_of
 from tests.golden_images import write_png
 from tests.kernel_samples import waves
 from warp_kernels.styles import STYLES

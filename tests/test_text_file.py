@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from pipeline.preset_file import read_preset
-from pipeline.shots import read_cuts
+from pipeline.options.presets import read_preset
+from pipeline.track.cuts import read_cuts
 from warp_kernels.errors import MediaError, OptionError
 
 ENCODINGS = {

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from warp_kernels.texture import Texture
+from warp_kernels.scene.texels import Texture
 
 
 @pytest.mark.parametrize("repeats", [False, True])

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from warp_kernels.texture import Texture
-from warp_kernels.tones.tonal_art_map import (
+from warp_kernels.scene.texels import Texture
+from warp_kernels.styles.tones.tonal_art_map import (
     TONE_STEP,
     TONES,
     crossing_strokes,

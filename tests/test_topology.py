@@ -8,11 +8,11 @@ import pytest
 from meshes import scrambled
 from test_legalise import assert_delaunay
 
-from stages.appraise import Appraiser
-from stages.correspond import kept_triangles
 from stages.edits import collapse_edges, collapsible, flip_edges, flippable, split_edges
 from stages.mesh import Mesh, heights_of, next_corner, previous_corner
+from stages.motion.correspondence import kept_triangles
 from stages.topology import TOPOLOGIES, Goal
+from stages.topology.appraise import Appraiser
 from stages.topology.energy import Energy
 from stages.topology.ranking import LEAST_GAIN
 from stages.validate import assert_valid
@@ -23,9 +23,9 @@ from tests.kernel_samples import (
     random_weights,
     waves,
 )
-from warp_kernels.color_model import COLOR_MODELS, LINEAR, ColorModel
-from warp_kernels.device import Device
-from warp_kernels.topology_gains import IMPOSSIBLE, SPLIT_PLACES
+from warp_kernels.device.device import Device
+from warp_kernels.energy.color_model import COLOR_MODELS, LINEAR, ColorModel
+from warp_kernels.energy.topology_gains import IMPOSSIBLE, SPLIT_PLACES
 
 WIDTH, HEIGHT = 61, 47
 LEAST_HEIGHT = 0.5

@@ -13,13 +13,13 @@ import cv2
 import numpy as np
 import pytest
 
-from pipeline.animate import animate
 from pipeline.cli import main
 from pipeline.job import Job
-from pipeline.plain_values import from_plain, to_plain
+from pipeline.loop.animate import animate
 from pipeline.progress import Progress
 from pipeline.track import TrackReader, TrackWriter
 from pipeline.track.blobs import pack, unpack
+from pipeline.track.plain_values import from_plain, to_plain
 from stages.flows import FLOWS
 from stages.layouts.importance import Importance
 from stages.media import FrameRange

@@ -10,10 +10,10 @@ import pytest
 from meshes import HEIGHT, WIDTH, random_mesh, scrambled, two_triangles
 from test_track import failure
 
-from pipeline.animate import animate
 from pipeline.cli import main
+from pipeline.compare.lifetimes import Lifetimes
 from pipeline.job import Job
-from pipeline.lifetimes import Lifetimes
+from pipeline.loop.animate import animate
 from pipeline.progress import Progress
 from pipeline.track import TrackReader
 from stages.edits import (
@@ -33,7 +33,7 @@ from stages.metrics.locate import locate
 from stages.snapshot import Snapshot
 from tests import media_samples as samples
 from tests.tracks import CUT, QUICK, write_clip
-from warp_kernels.color_model import CONSTANT, LINEAR, ColorModel
+from warp_kernels.energy.color_model import CONSTANT, LINEAR, ColorModel
 
 TRACK_KEYS = {"births", "deaths", "flips", "jitter", "pop_energy", "inverted"}
 
@@ -274,7 +274,7 @@ def test_independent_frames_share_nothing(drawn: tuple, tmp_path: Path, capsys) 
 
 def test_inverted_triangles_are_counted(drawn: tuple, tmp_path: Path) -> None:
     """A vertex that was pushed over the opposite edge folds its star."""
-    from pipeline.track_measures import TrackMeter
+    from pipeline.compare.track_measures import TrackMeter
 
     with TrackReader(drawn[2]) as reader:
         meter = TrackMeter(reader, drawn[0])

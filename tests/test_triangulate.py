@@ -5,18 +5,18 @@ from functools import lru_cache
 import numpy as np
 import pytest
 
-from stages.advect import Carried
-from stages.convergence import Convergence
 from stages.layouts import LAYOUTS
 from stages.mesh import Mesh
-from stages.refine import RefineOptions
+from stages.motion.advect import Carried
 from stages.snapshot import Snapshot
+from stages.solve.convergence import Convergence
 from stages.topology import TOPOLOGIES
+from stages.topology.refine import RefineOptions
 from stages.triangulate import TriangulateOptions, Triangulator
 from stages.validate import assert_valid
 from tests.kernel_samples import frame_of, noise, waves
-from warp_kernels.color_model import COLOR_MODELS, LINEAR
-from warp_kernels.device import Device
+from warp_kernels.device.device import Device
+from warp_kernels.energy.color_model import COLOR_MODELS, LINEAR
 from warp_kernels.errors import OptionError
 
 WIDTH, HEIGHT = 151, 113

@@ -5,12 +5,12 @@ import numpy as np
 import pytest
 from meshes import HEIGHT, WIDTH, random_mesh, scrambled
 
-from stages.cover import collapse_covered
 from stages.flows.dis import Dis
 from stages.flows.field import FlowField
 from stages.flows.passage import Passage
 from stages.flows.view import View
 from stages.layouts.grid import Grid
+from stages.motion.occlusion import collapse_covered
 from stages.validate import assert_valid
 
 SIZE = 96

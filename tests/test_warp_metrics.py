@@ -9,7 +9,7 @@ import pytest
 from test_measure import WHOLE, gray, write_clip, write_still
 
 from pipeline.cli import main
-from pipeline.measure import measure
+from pipeline.compare.measure import measure
 from stages.flows.field import FlowField
 from stages.metrics import Motion, motion_difference, warp_error
 from stages.metrics.visible import visible
@@ -182,7 +182,7 @@ def test_table_tells_coherence_of_clips_only(tmp_path: Path, capsys) -> None:
 
 def test_few_frames_are_kept(tmp_path: Path, monkeypatch) -> None:
     """Memory does not grow with the clip."""
-    from pipeline import coherence
+    from pipeline.compare import coherence
 
     kept = []
     add = coherence.CoherenceMeter.add

@@ -8,20 +8,20 @@ import pytest
 from scipy.ndimage import gaussian_filter
 
 import stages.triangulate
-from pipeline.animate import animate
 from pipeline.cli import main
 from pipeline.job import Job
+from pipeline.loop.animate import animate
 from pipeline.progress import Progress
 from stages.frame import Frame
+from stages.masks.weight_maps import WeightMap
 from stages.media import FrameRange, open_decoder
-from stages.refine import RefineOptions
+from stages.topology.refine import RefineOptions
 from stages.triangulate import TriangulateOptions
-from stages.weights import WeightMap
 from tests import media_samples as samples
 from tests.kernel_samples import frame_of
+from warp_kernels.energy.workspace import Workspace
 from warp_kernels.errors import MediaError
 from warp_kernels.styles import STYLES
-from warp_kernels.workspace import Workspace
 
 SIZE = (48, 32)
 QUICK = TriangulateOptions(iterations=16, frame_iterations=2, refine=RefineOptions(triangles=40))

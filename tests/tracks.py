@@ -6,12 +6,12 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from pipeline.animate import Animated, solve
 from pipeline.job import Job
+from pipeline.loop.animate import Animated, solve
 from pipeline.progress import Progress
 from pipeline.track.schema import TABLES
 from stages.media import FrameRange
-from stages.refine import RefineOptions
+from stages.topology.refine import RefineOptions
 from stages.triangulate import TriangulateOptions
 from tests import media_samples as samples
 

@@ -16,6 +16,7 @@ from importlib import import_module
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from pipeline.compare.report import Report as Report
     from pipeline.library.animator import Animator as Animator
     from pipeline.library.keywords import AnimateKeywords as AnimateKeywords
     from pipeline.library.keywords import AnimatorKeywords as AnimatorKeywords
@@ -32,7 +33,6 @@ if TYPE_CHECKING:
     from pipeline.library.track import open_track as open_track
     from pipeline.library.triangulate import triangulate as triangulate
     from pipeline.library.triangulation import Triangulation as Triangulation
-    from pipeline.report import Report as Report
     from warp_kernels.errors import MediaError as MediaError
     from warp_kernels.errors import OptionError as OptionError
     from warp_kernels.errors import OutputError as OutputError
@@ -56,7 +56,7 @@ _HOMES = {
     "pipeline.library.track": ("Track", "open_track"),
     "pipeline.library.triangulate": ("triangulate",),
     "pipeline.library.triangulation": ("Triangulation",),
-    "pipeline.report": ("Report",),
+    "pipeline.compare.report": ("Report",),
     "warp_kernels.errors": (
         "MediaError",
         "OptionError",

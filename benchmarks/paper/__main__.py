@@ -14,7 +14,7 @@ from benchmarks.paper.page import Section, write_page
 from benchmarks.paper.pictures import folder_pictures, sample_pictures
 from benchmarks.paper.study import Study
 from benchmarks.timing import program
-from warp_kernels.device import Device
+from warp_kernels.device.device import Device
 
 RESULTS = Path(__file__).parents[2] / "docs" / "results"
 

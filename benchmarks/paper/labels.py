@@ -4,8 +4,8 @@ import numpy as np
 import warp as wp
 
 from stages.mesh import Mesh
-from warp_kernels.device import Device
-from warp_kernels.gbuffer import record_gbuffer
+from warp_kernels.device.device import Device
+from warp_kernels.drawing.gbuffer import record_gbuffer
 
 
 def triangle_of_pixels(device: Device, mesh: Mesh) -> np.ndarray:

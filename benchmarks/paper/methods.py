@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field, replace
 
 from stages.optimize import OptimizeOptions
-from stages.refine import RefineOptions
+from stages.topology.refine import RefineOptions
 from stages.triangulate import TriangulateOptions
 
 PAPER_ITERATIONS = 600

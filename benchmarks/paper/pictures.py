@@ -7,7 +7,7 @@ import numpy as np
 
 from benchmarks.timing import read_picture
 from stages.media import FrameRange
-from stages.media.decode import open_decoder
+from stages.media.reading.decode import open_decoder
 
 SAMPLES = Path(__file__).parents[2] / "sample_videos"
 STILLS = (

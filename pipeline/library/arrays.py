@@ -3,16 +3,16 @@
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from pipeline.animate import Solved, prepared, solved_frames
-from pipeline.attention import Attention
-from pipeline.build_job import build_job
 from pipeline.job import Job
 from pipeline.library.given import given_values
 from pipeline.library.triangulation import Origin, Triangulation
+from pipeline.loop.animate import Solved, prepared, solved_frames
+from pipeline.loop.attention import Attention
+from pipeline.options.build import build_job
 from stages.frame import Frame
+from stages.masks.weight_maps import WeightMap
 from stages.media import MediaInfo
 from stages.triangulate import Triangulator
-from stages.weights import WeightMap
 
 
 def job_without_files(function: str, options: Mapping[str, Any]) -> Job:

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from warp_kernels.device import Device
+from warp_kernels.device.device import Device
 
 
 @contextmanager

@@ -5,14 +5,14 @@ from typing import Any
 
 import numpy as np
 
-from pipeline.animate import triangulator_of
-from pipeline.build_job import build_job
 from pipeline.job import Job
 from pipeline.library.device import opened_device
+from pipeline.loop.animate import triangulator_of
+from pipeline.options.build import build_job
 from stages.frame import Frame
 from stages.render import Renderer
 from stages.snapshot import Snapshot
-from warp_kernels.device import Device
+from warp_kernels.device.device import Device
 from warp_kernels.errors import OptionError
 
 

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from typing import Any
 
 from pipeline.library.keywords import PRESET, TAKEN, options_of
-from pipeline.option_value import option_value
-from pipeline.options import Option, with_preset
+from pipeline.options.command_line import Option, with_preset
+from pipeline.options.option_value import option_value
 from warp_kernels.errors import OptionError
 
 INSTEAD = {
@@ -70,7 +70,7 @@ def file_name(what: str, value: object) -> str:
 
 def _preset(value: object) -> dict[str, object]:
     """Values of a preset."""
-    from pipeline.preset_file import read_preset
+    from pipeline.options.presets import read_preset
 
     return {} if value is None else read_preset(file_name("preset", value))
 

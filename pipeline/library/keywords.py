@@ -8,7 +8,7 @@ from fractions import Fraction
 from os import PathLike
 from typing import Any, TypedDict
 
-from pipeline.options import COMMAND_OPTIONS, Option, job_options
+from pipeline.options.command_line import COMMAND_OPTIONS, Option, job_options
 
 Name = str | PathLike[str]
 """The name of a file."""

@@ -45,7 +45,7 @@ def explained_loss(jobs: int) -> Iterator[None]:
     if jobs == 1:
         yield
         return
-    from pipeline.parts import LostPartError
+    from pipeline.loop.processes import LostPartError
 
     try:
         yield

@@ -23,9 +23,9 @@ from pipeline.library.wording import in_keywords, worded
 from pipeline.progress import Progress, Summary
 
 if TYPE_CHECKING:
-    from pipeline.animate import Animated
+    from pipeline.compare.report import Report
     from pipeline.job import Job
-    from pipeline.report import Report
+    from pipeline.loop.animate import Animated
 
 
 @with_keywords("animate")
@@ -48,10 +48,10 @@ def animate(
     job = _job("animate", source, output, options)
     with progress_for(progress) as told, explained_loss(job.jobs):
         if job.jobs > 1 or job.followed:
-            from pipeline.parts import animate_in_parts
+            from pipeline.loop.processes import animate_in_parts
 
             return _result(animate_in_parts(job, told), job.output, told)
-        from pipeline.animate import animate as animate_at_once
+        from pipeline.loop.animate import animate as animate_at_once
 
         return _result(animate_at_once(job, told), job.output, told)
 
@@ -77,10 +77,10 @@ def solve(
     job = _job("solve", source, output, options, **fixed)
     with progress_for(progress) as told, explained_loss(job.jobs):
         if job.jobs > 1:
-            from pipeline.parts import solve_in_parts
+            from pipeline.loop.processes import solve_in_parts
 
             return _result(solve_in_parts(job, told), job.output, told)
-        from pipeline.animate import solve as solve_at_once
+        from pipeline.loop.animate import solve as solve_at_once
 
         return _result(solve_at_once(job, told), job.output, told)
 
@@ -109,8 +109,8 @@ def render(
     """
     moved = None if source is None else Path(file_name("source", source))
     look = _job("render", file_name("track", track), output, options, track=None)
-    from pipeline.animate import render as draw
-    from pipeline.render_job import render_job
+    from pipeline.look.render_job import render_job
+    from pipeline.loop.animate import render as draw
     from pipeline.track import TrackReader
 
     with TrackReader(look.source) as reader, progress_for(progress) as told:
@@ -141,8 +141,8 @@ def measure(
     Raises:
         TrimotionError: One of its kinds; the message is one line that ends with a remedy.
     """
-    from pipeline.build_job import frame_range
-    from pipeline.measure import measure as compare
+    from pipeline.compare.measure import measure as compare
+    from pipeline.options.build import frame_range
 
     wanted = frame_range(given_values("measure", options))
     names = Path(file_name("source", source)), Path(file_name("output", output))
@@ -166,7 +166,7 @@ def _job(
     names = {"source": file_name("source", source), "output": file_name("output", output)}
     values = given_values(function, options)
     check_processes(cast(int, values.get("jobs", 1)))
-    from pipeline.build_job import build_job
+    from pipeline.options.build import build_job
 
     return build_job({**values, **names, **fixed})
 

@@ -7,7 +7,7 @@ from typing import Any, TypeVar
 
 from pipeline.library.keywords import KEYWORDS, PRESET, options_of
 from pipeline.library.wording import in_keywords
-from pipeline.options import NO_DEFAULT, Option, member_of
+from pipeline.options.command_line import NO_DEFAULT, Option, member_of
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 

@@ -3,7 +3,6 @@
 from dataclasses import replace
 from typing import Any, Unpack
 
-from pipeline.animate import triangulator_of
 from pipeline.library.arrays import job_without_files, solved_arrays, told
 from pipeline.library.device import opened_device
 from pipeline.library.keywords import PictureKeywords
@@ -11,6 +10,7 @@ from pipeline.library.pixels import frame_of, info_of, weights_of
 from pipeline.library.signature import with_keywords
 from pipeline.library.triangulation import Triangulation
 from pipeline.library.wording import worded
+from pipeline.loop.animate import triangulator_of
 
 
 @with_keywords("triangulate")

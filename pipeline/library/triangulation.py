@@ -11,8 +11,8 @@ from pipeline.library.draw import drawn
 from pipeline.library.given import given_values
 from pipeline.library.wording import worded
 from stages.frame import Frame
-from stages.media.still_writer import encode_still
-from stages.paint import paint_of
+from stages.look.paint import paint_of
+from stages.media.writing.still_writer import encode_still
 from stages.snapshot import Snapshot
 
 

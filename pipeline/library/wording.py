@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from functools import cache
 
 from pipeline.library.keywords import keyword_of
-from pipeline.options import Option, job_options
+from pipeline.options.command_line import Option, job_options
 from warp_kernels.errors import MediaError, TrimotionError
 
 _FLAG = re.compile(r"--(?P<flag>[a-z]+(?:-[a-z]+)*)(?:(?P<gap> )(?=(?P<next>\S+)))?")

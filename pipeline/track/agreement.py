@@ -3,8 +3,8 @@
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from pipeline.options import Option, job_options
-from pipeline.plain_values import CLASS
+from pipeline.options.command_line import Option, job_options
+from pipeline.track.plain_values import CLASS
 
 FREE = frozenset({"source", "output", "frame_range", "device", "threads", "encode"})
 """Fields of a job that do not change what a frame becomes; those of looks, files and processes

@@ -10,13 +10,13 @@ from pathlib import Path
 from typing import Any
 
 from pipeline.job import Job
-from pipeline.plain_values import UnknownNameError, from_plain, to_plain
-from pipeline.shots import read_cuts
+from pipeline.track.cuts import read_cuts
 from pipeline.track.identity import SourceIdentity, identity_of
+from pipeline.track.plain_values import UnknownNameError, from_plain, to_plain
 from pipeline.version import library_versions, program_version
 from stages.focus.none import NoFocus
 from stages.media import FrameRange, MediaInfo
-from warp_kernels.color_model import COLOR_MODELS, ColorModel
+from warp_kernels.energy.color_model import COLOR_MODELS, ColorModel
 from warp_kernels.errors import OptionError, TrackError
 from warp_kernels.raster import MAX_SIDE
 

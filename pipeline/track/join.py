@@ -12,7 +12,7 @@ from pipeline.track.header import Header, write_header
 from pipeline.track.reader import TrackReader
 from pipeline.track.schema import TABLES, create, has_table, put_in_place, writing
 from stages.media import FrameRange
-from stages.media.commit import PendingFile
+from stages.media.writing.commit import PendingFile
 from warp_kernels.errors import OptionError, TrackError
 
 

@@ -21,12 +21,12 @@ from pipeline.track.schema import (
     open_existing,
     reading,
 )
-from stages.blank import color_owners
 from stages.media import FrameRange
 from stages.mesh import Mesh
 from stages.snapshot import Snapshot
+from stages.solve.color_owners import color_owners
 from stages.validate import assert_finite, assert_sound
-from warp_kernels.color_model import CHANNELS
+from warp_kernels.energy.color_model import CHANNELS
 from warp_kernels.errors import TrackError
 
 LAST = 1 << 53

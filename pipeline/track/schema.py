@@ -18,7 +18,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from stages.media.commit import PendingFile, output_error
+from stages.media.writing.commit import PendingFile, output_error
 from warp_kernels.errors import OutputError, TrackError
 
 MAGIC = b"SQLite format 3\0"

@@ -18,7 +18,7 @@ from pipeline.track.schema import (
     put_in_place,
     writing,
 )
-from stages.media.commit import PendingFile
+from stages.media.writing.commit import PendingFile
 from stages.mesh import Mesh
 from stages.snapshot import Snapshot
 from warp_kernels.errors import OutputError

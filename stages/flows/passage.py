@@ -6,8 +6,8 @@ import numpy as np
 
 from stages.flows import Flow
 from stages.flows.field import FlowField
+from stages.flows.patch_matching import LINES, unlikeness, vote
 from stages.flows.view import View
-from stages.flows.vote import LINES, unlikeness, vote
 
 DOUBTFUL = 2.0
 """Motion is trusted by half where patches differ by this in the mean [code values]; found by trial

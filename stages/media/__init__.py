@@ -1,15 +1,15 @@
 """Reading and writing media files; the only package that knows FFmpeg."""
 
-from stages.media.count import count_frames
-from stages.media.decode import Decoder, open_decoder
-from stages.media.encode import Encoder, open_encoder
-from stages.media.encoder_setup import EncodeOptions
 from stages.media.frame_range import FrameRange, parse_time
-from stages.media.info import MediaInfo
 from stages.media.naming import NumberedPattern, input_pattern
-from stages.media.output_plan import OutputPlan, check_output
-from stages.media.probe import probe
-from stages.media.read_options import ReadOptions
+from stages.media.reading.count import count_frames
+from stages.media.reading.decode import Decoder, open_decoder
+from stages.media.reading.info import MediaInfo
+from stages.media.reading.probe import probe
+from stages.media.reading.read_options import ReadOptions
+from stages.media.writing.encode import Encoder, open_encoder
+from stages.media.writing.encoder_setup import EncodeOptions
+from stages.media.writing.output_plan import OutputPlan, check_output
 
 __all__ = [
     "Decoder",

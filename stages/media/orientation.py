@@ -7,7 +7,7 @@ from fractions import Fraction
 import numpy as np
 from av.video.frame import VideoFrame
 
-from stages.media.side_data import side_data
+from stages.media.reading.side_data import side_data
 
 MAX_SAMPLE_ASPECT = Fraction(8)
 """Pixels stretched by more than this are taken for a mistake in the file."""

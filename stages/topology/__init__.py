@@ -6,8 +6,8 @@ method `adapt(mesh, appraiser, goal) -> Mesh`; a new one is a file and a line he
 
 from typing import Protocol
 
-from stages.appraise import Appraiser
 from stages.mesh import Mesh
+from stages.topology.appraise import Appraiser
 from stages.topology.delaunay import Delaunay
 from stages.topology.energy import Energy
 from stages.topology.goal import Goal

@@ -2,15 +2,15 @@
 
 from dataclasses import dataclass
 
-from stages.appraise import Appraiser
-from stages.collapse import collapse_slivers
-from stages.correspond import kept_triangles
-from stages.divide import divide_large
 from stages.edits import legalise
 from stages.mesh import Mesh
-from stages.refine import split_worst
+from stages.motion.correspondence import kept_triangles
+from stages.topology.appraise import Appraiser
+from stages.topology.area_limit import divide_large
+from stages.topology.collapse_slivers import collapse_slivers
 from stages.topology.goal import SLIVER_HEIGHT, Goal
 from stages.topology.growth import Growth
+from stages.topology.refine import split_worst
 
 HALF = Growth(start=0.5, peak=1.0, grown=0.6, settled=0.6)
 """Refinement places every second triangle."""

@@ -4,9 +4,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from stages.appraise import Appraiser
-from stages.collapse import collapse_slivers, press_slivers
-from stages.divide import divide_large
 from stages.edits import (
     collapse_edges,
     flip_edges,
@@ -16,6 +13,10 @@ from stages.edits import (
 )
 from stages.edits.neighbourhood import edge_triangles, stars
 from stages.mesh import Mesh
+from stages.topology.appraise import Appraiser
+from stages.topology.area_limit import divide_large
+from stages.topology.collapse_slivers import collapse_slivers, press_slivers
+from stages.topology.followed_slivers import sliver_changes
 from stages.topology.goal import SLIVER_HEIGHT, Goal
 from stages.topology.growth import Growth
 from stages.topology.ranking import (
@@ -25,7 +26,6 @@ from stages.topology.ranking import (
     ranked_flips,
     ranked_splits,
 )
-from stages.topology.slivers import sliver_changes
 
 TWICE = Growth(start=1.0, peak=2.0, grown=0.2, settled=0.9)
 """Twice the triangles at first: what is then taken away, one vertex at a time, are those that

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 from math import inf
 
-from stages.unrest import Unrest
+from stages.motion.boiling import Unrest
 
 
 @dataclass(frozen=True)

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from stages.appraise import Appraiser
 from stages.edits.collapse_edges import keeps_border
 from stages.mesh import Mesh
-from warp_kernels.topology_gains import IMPOSSIBLE
+from stages.topology.appraise import Appraiser
+from warp_kernels.energy.topology_gains import IMPOSSIBLE
 
 LEAST_GAIN = 1.0
 """Changes that save less than this are rounding [code value^2 px]."""

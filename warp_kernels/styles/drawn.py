@@ -6,12 +6,12 @@ from math import cos, radians, sin
 from typing import Any, ClassVar
 
 from warp_kernels.errors import OptionError
+from warp_kernels.scene.texels import Texture
 from warp_kernels.styles.color import parse_color
 from warp_kernels.styles.style import ReadPicture, Style
-from warp_kernels.texture import Texture
-from warp_kernels.tones.lookup import packed_tones
-from warp_kernels.tones.strokes import prepare_strokes, strokes_alone, strokes_on_paper
-from warp_kernels.tones.tonal_art_map import SPACING, Drawing, tonal_art_map
+from warp_kernels.styles.tones.lookup import packed_tones
+from warp_kernels.styles.tones.strokes import prepare_strokes, strokes_alone, strokes_on_paper
+from warp_kernels.styles.tones.tonal_art_map import SPACING, Drawing, tonal_art_map
 
 NO_PAPER = "none"
 """Written instead of a colour where what lies below is the paper."""

@@ -5,10 +5,18 @@ from typing import Any, ClassVar
 
 import warp as wp
 
-from warp_kernels.scene import Ink, Numbers, Sample, Scene, StyleParameters, prepared_for, side_of
+from warp_kernels.scene.scene import (
+    Ink,
+    Numbers,
+    Sample,
+    Scene,
+    StyleParameters,
+    prepared_for,
+    side_of,
+)
+from warp_kernels.scene.triangle_frame import line_coverage, smooth_rise
 from warp_kernels.styles.color import parse_color
 from warp_kernels.styles.style import Style
-from warp_kernels.triangle_frame import line_coverage, smooth_rise
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 

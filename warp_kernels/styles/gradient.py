@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 
 import warp as wp
 
-from warp_kernels.scene import (
+from warp_kernels.scene.scene import (
     Ink,
     Numbers,
     Sample,

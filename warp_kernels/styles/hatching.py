@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from warp_kernels.styles.drawn import Drawn
-from warp_kernels.tones.tonal_art_map import Drawing, parallel_strokes
+from warp_kernels.styles.tones.tonal_art_map import Drawing, parallel_strokes
 
 
 @dataclass(frozen=True)

@@ -5,9 +5,9 @@ from typing import Any, ClassVar
 
 import warp as wp
 
-from warp_kernels.scene import Ink, Sample, Scene, StyleParameters, color_of
+from warp_kernels.scene.scene import Ink, Sample, Scene, StyleParameters, color_of
+from warp_kernels.scene.triangle_frame import coverage_of, from_incentre, inradius, smooth_rise
 from warp_kernels.styles.style import Style
-from warp_kernels.triangle_frame import coverage_of, from_incentre, inradius, smooth_rise
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 

@@ -5,10 +5,10 @@ from typing import Any, ClassVar
 
 import warp as wp
 
-from warp_kernels.scene import FIXED, Ink, Sample, Scene, StyleParameters, full_ink
-from warp_kernels.source_picture import source_at
+from warp_kernels.scene.scene import FIXED, Ink, Sample, Scene, StyleParameters, full_ink
+from warp_kernels.scene.source_picture import source_at
+from warp_kernels.scene.triangle_frame import from_incentre, inradius
 from warp_kernels.styles.style import Style
-from warp_kernels.triangle_frame import from_incentre, inradius
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 

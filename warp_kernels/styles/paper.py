@@ -7,13 +7,21 @@ from typing import Any, ClassVar
 import numpy as np
 import warp as wp
 
-from warp_kernels.scene import Ink, Numbers, Sample, Scene, StyleParameters, full_ink, prepared_for
+from warp_kernels.scene.scene import (
+    Ink,
+    Numbers,
+    Sample,
+    Scene,
+    StyleParameters,
+    full_ink,
+    prepared_for,
+)
+from warp_kernels.scene.texels import Texture as Texels
+from warp_kernels.scene.texels import detail_for, texture_at
+from warp_kernels.scene.triangle_frame import base_direction, chance
 from warp_kernels.styles.color import parse_color
 from warp_kernels.styles.style import ReadPicture, Style
 from warp_kernels.styles.texture import relit
-from warp_kernels.texture import Texture as Texels
-from warp_kernels.texture import detail_for, texture_at
-from warp_kernels.triangle_frame import base_direction, chance
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 

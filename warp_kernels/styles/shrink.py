@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 
 import warp as wp
 
-from warp_kernels.scene import (
+from warp_kernels.scene.scene import (
     Ink,
     Sample,
     Scene,
@@ -15,13 +15,13 @@ from warp_kernels.scene import (
     incentre_of,
     side_of,
 )
-from warp_kernels.styles.style import Style
-from warp_kernels.triangle_frame import (
+from warp_kernels.scene.triangle_frame import (
     coverage_of,
     distance_to_segment,
     from_incentre,
     inradius,
 )
+from warp_kernels.styles.style import Style
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 

@@ -5,8 +5,8 @@ from typing import Any, ClassVar
 
 import warp as wp
 
-from warp_kernels.scene import Ink, Sample, Scene, StyleParameters, full_ink
-from warp_kernels.source_picture import source_at
+from warp_kernels.scene.scene import Ink, Sample, Scene, StyleParameters, full_ink
+from warp_kernels.scene.source_picture import source_at
 from warp_kernels.styles.style import Style
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})

@@ -7,8 +7,8 @@ from typing import Any, ClassVar
 import numpy as np
 
 from warp_kernels.errors import OptionError
+from warp_kernels.scene.texels import Texture
 from warp_kernels.styles.color import parse_color
-from warp_kernels.texture import Texture
 
 ReadPicture = Callable[[str], np.ndarray]
 """Reads a picture by its name as brightness, 0 (black) to 1 (white), [rows, columns]."""

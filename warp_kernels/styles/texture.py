@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 import warp as wp
 
 from warp_kernels.errors import OptionError, TrimotionError
-from warp_kernels.scene import (
+from warp_kernels.scene.scene import (
     Ink,
     Numbers,
     Sample,
@@ -17,10 +17,10 @@ from warp_kernels.scene import (
     prepared_for,
     side_of,
 )
+from warp_kernels.scene.texels import Texture as Texels
+from warp_kernels.scene.texels import detail_for, texture_at
 from warp_kernels.styles.pictures import PICTURES
 from warp_kernels.styles.style import ReadPicture, Style
-from warp_kernels.texture import Texture as Texels
-from warp_kernels.texture import detail_for, texture_at
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 

@@ -10,7 +10,7 @@ from benchmarks.paper.methods import ours
 from benchmarks.paper.page import Check, Section
 from benchmarks.paper.study import Study
 from benchmarks.timing import layout_of, table
-from warp_kernels.device import Device
+from warp_kernels.device.device import Device
 
 HEADS = (
     "colours",

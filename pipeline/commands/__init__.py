@@ -1,0 +1,1 @@
+"""The commands: their grammar, and what each one prints or runs."""

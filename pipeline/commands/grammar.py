@@ -1,0 +1,289 @@
+"""The grammar of the command line: subcommands, their arguments, their help."""
+
+import argparse
+import difflib
+from collections.abc import Sequence
+from typing import Any, NoReturn
+
+from pipeline.options.command_line import (
+    COMMAND_OPTIONS,
+    add_job_options,
+    add_range_options,
+    registry_help,
+)
+from pipeline.options.flags import text_value, whole_number
+from pipeline.progress import CHOICES
+
+ABOUT = "Turn videos into coherent triangulated animations."
+
+EXAMPLES = """\
+examples:
+  trimotion animate clip.mp4 -o triangles.mp4
+  trimotion animate clip.mp4 -o triangles.mp4 --triangles 3000 --style flat --style edges
+  trimotion animate clip.mp4 -o part.webm --frames 100-199 --color linear --scale 0.5
+  trimotion animate photo.jpg -o poster.png --triangles 700 --scale 2
+  trimotion animate clip.mp4 -o quick.mp4 --preset preview
+  trimotion solve clip.mp4 -o clip.mtrk --jobs 4
+  trimotion render clip.mtrk -o lines.mp4 --style flat --style edges --scale 2
+"""
+
+COMMANDS_HELP = """\
+commands:
+  animate INPUT -o OUTPUT    convert a video, a still or numbered stills
+  solve INPUT -o JOB.mtrk    convert to a mesh track, from which any look can be drawn
+  render JOB.mtrk -o OUTPUT  draw a mesh track
+  plan INPUT                 ranges of whole shots, for runs on several machines
+  join A.mtrk B.mtrk ... -o OUT.mtrk   put the tracks of ranges together
+  info FILE                  what a file is: a source or a mesh track
+  measure SOURCE OUTPUT      how close an output is to its source, and how coherent
+  styles                     all styles and their parameters; --sheet draws them
+
+trimotion COMMAND --help tells the options of a command.
+
+"""
+
+
+class OneLineParser(argparse.ArgumentParser):
+    """A parser whose errors are one line that ends with a remedy."""
+
+    def error(self, message: str) -> NoReturn:
+        """Print a mistake and leave with exit code 2."""
+        line = " ".join(message.removeprefix("argument ").split())
+        self.exit(2, f"trimotion: error: {line}; see {self.prog} --help\n")
+
+    def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
+        """Refuse unknown options here, where the similar ones are known."""
+        found, unknown = super().parse_known_args(args, namespace)
+        if unknown and self.get_default("command"):
+            self.error(_unknown(unknown, list(self._option_string_actions)))
+        return found, unknown
+
+
+class _Version(argparse.Action):
+    """Prints the version, which takes a while to find, only when asked."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> NoReturn:
+        from pipeline.version import program_version
+
+        print(f"trimotion {program_version()}")
+        parser.exit()
+
+
+def build_parser() -> argparse.ArgumentParser:
+    """Make the parser; options of a job that were not given are absent from its result."""
+    parser = OneLineParser(
+        prog="trimotion",
+        description=ABOUT,
+        usage="trimotion COMMAND ... ",
+        epilog=COMMANDS_HELP + EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        allow_abbrev=False,
+    )
+    parser.add_argument("--version", action=_Version, nargs=0, help="print the version")
+    commands = parser.add_subparsers(
+        dest="command", metavar="COMMAND", required=True, help=argparse.SUPPRESS
+    )
+    _add_animate(commands)
+    _add_solve(commands)
+    _add_render(commands)
+    _add_plan(commands)
+    _add_join(commands)
+    _add_info(commands)
+    _add_measure(commands)
+    _add_styles(commands)
+    return parser
+
+
+def _add_animate(commands: Any) -> None:
+    parser = _command(
+        commands,
+        "animate",
+        "Convert a video, a still or numbered stills (shot_####.png) into triangles.",
+        "trimotion animate INPUT -o OUTPUT [options]",
+        registry_help() + "\n\n" + EXAMPLES,
+    )
+    parser.add_argument("source", metavar="INPUT", type=text_value, help="what FFmpeg reads")
+    _add_output(
+        parser, "OUTPUT", "mp4, mov, mkv, webm, gif, a still, or stills such as shot_####.png"
+    )
+    add_job_options(parser)
+    _add_messages(parser)
+
+
+def _add_solve(commands: Any) -> None:
+    parser = _command(
+        commands,
+        "solve",
+        "Convert a source to a mesh track. A run that is killed goes on with --resume.",
+        "trimotion solve INPUT -o JOB.mtrk [options]",
+        EXAMPLES,
+    )
+    parser.add_argument("source", metavar="INPUT", type=text_value, help="what FFmpeg reads")
+    _add_output(parser, "JOB.mtrk", "the mesh track")
+    add_job_options(parser, COMMAND_OPTIONS["solve"])
+    _add_messages(parser)
+
+
+def _add_render(commands: Any) -> None:
+    parser = _command(
+        commands,
+        "render",
+        "Draw a mesh track, or a part of it, in any style and size.",
+        "trimotion render JOB.mtrk -o OUTPUT [options]",
+        EXAMPLES,
+    )
+    parser.add_argument("track", metavar="JOB.mtrk", type=text_value, help="a mesh track")
+    _add_output(parser, "OUTPUT", "what animate writes")
+    parser.add_argument(
+        "--source", metavar="INPUT", type=text_value, help="where the source is now"
+    )
+    add_job_options(parser, COMMAND_OPTIONS["render"])
+    _add_messages(parser)
+
+
+def _add_plan(commands: Any) -> None:
+    parser = _command(
+        commands,
+        "plan",
+        "Print ranges of whole shots, one a line: solved apart and joined they are the whole.",
+        "trimotion plan INPUT [--parts N] [--json]",
+        "",
+    )
+    parser.add_argument("source", metavar="INPUT", type=text_value, help="what FFmpeg reads")
+    parser.add_argument(
+        "--parts", metavar="N", type=whole_number, help="at most so many (default: one a shot)"
+    )
+    parser.add_argument("--json", action="store_true", help="print JSON")
+    add_job_options(parser, COMMAND_OPTIONS["plan"])
+
+
+def _add_join(commands: Any) -> None:
+    parser = _command(
+        commands,
+        "join",
+        "Put the tracks of ranges that follow each other together.",
+        "trimotion join A.mtrk B.mtrk ... -o OUT.mtrk",
+        "",
+    )
+    parser.add_argument(
+        "tracks", metavar="TRACK.mtrk", nargs="+", type=text_value, help="in any order"
+    )
+    _add_output(parser, "OUT.mtrk", "the joined track")
+    parser.add_argument("--overwrite", action="store_true", help="replace an existing track")
+
+
+def _add_output(parser: argparse.ArgumentParser, metavar: str, text: str) -> None:
+    parser.add_argument(
+        "-o", dest="output", metavar=metavar, type=text_value, required=True, help=text
+    )
+
+
+def _add_messages(parser: argparse.ArgumentParser) -> None:
+    group = parser.add_argument_group("presets and messages")
+    group.add_argument(
+        "--preset",
+        metavar="FILE.toml",
+        type=text_value,
+        help="options from a file, or a shipped one: preview, fine; the command line beats it",
+    )
+    _add_telling(group)
+
+
+def _add_telling(group: Any) -> None:
+    group.add_argument(
+        "--progress",
+        choices=CHOICES,
+        metavar="|".join(CHOICES),
+        default="auto",
+        help="auto is a bar on a terminal, else plain lines (default: auto)",
+    )
+    group.add_argument("-q", "--quiet", action="store_true", help="tell warnings and errors only")
+    group.add_argument(
+        "-v",
+        "--verbose",
+        action="store_true",
+        help="tell choices that were made, even with --progress none",
+    )
+
+
+def _add_info(commands: Any) -> None:
+    parser = _command(commands, "info", "Print what a file is.", "trimotion info FILE [--json]", "")
+    parser.add_argument(
+        "file", metavar="FILE", type=text_value, help="a mesh track or what FFmpeg reads"
+    )
+    parser.add_argument("--json", action="store_true", help="print JSON")
+
+
+def _add_measure(commands: Any) -> None:
+    parser = _command(
+        commands,
+        "measure",
+        "Compare an output with its source: rmse [code values], PSNR, R (Eq. 12), E_warp and tOF; "
+        "with a track also what its meshes do.",
+        "trimotion measure SOURCE OUTPUT [--track JOB.mtrk] [--json]",
+        "",
+    )
+    parser.add_argument("source", metavar="SOURCE", type=text_value, help="what was converted")
+    parser.add_argument("output", metavar="OUTPUT", type=text_value, help="what came out")
+    parser.add_argument(
+        "--track",
+        metavar="JOB.mtrk",
+        type=text_value,
+        help="what the output was drawn from; its frames are compared if no range is given",
+    )
+    parser.add_argument("--json", action="store_true", help="print JSON, with every frame")
+    add_range_options(parser)
+    _add_telling(parser.add_argument_group("messages"))
+
+
+def _add_styles(commands: Any) -> None:
+    parser = _command(
+        commands,
+        "styles",
+        "Print all styles with their parameters, or draw one portrait in every style.",
+        "trimotion styles [--json] [PICTURE] [--sheet OUT.png]",
+        "",
+    )
+    parser.add_argument(
+        "picture",
+        metavar="PICTURE",
+        nargs="?",
+        type=text_value,
+        help="what the sheet shows (default: the portrait among the sample clips)",
+    )
+    parser.add_argument(
+        "--sheet", metavar="OUT.png", type=text_value, help="write a picture of all styles"
+    )
+    parser.add_argument(
+        "--triangles", metavar="N", type=whole_number, default=900, help="triangles of the sheet"
+    )
+    parser.add_argument("--overwrite", action="store_true", help="replace an existing sheet")
+    parser.add_argument("--json", action="store_true", help="print JSON")
+
+
+def _command(
+    commands: Any, name: str, description: str, usage: str, epilog: str
+) -> argparse.ArgumentParser:
+    parser: argparse.ArgumentParser = commands.add_parser(
+        name,
+        prog=f"trimotion {name}",
+        description=description,
+        usage=usage,
+        epilog=epilog,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        allow_abbrev=False,
+    )
+    parser.add_argument("--debug", action="store_true", help="show where an error arose")
+    parser.set_defaults(command=name)
+    return parser
+
+
+def _unknown(arguments: Sequence[str], known: Sequence[str]) -> str:
+    """What to say about arguments that no option takes."""
+    first = arguments[0].split("=")[0]
+    if not first.startswith("-"):
+        return f"{arguments[0]!r}: unknown argument"
+    begun = [option for option in known if option.startswith(first)]
+    similar = begun or difflib.get_close_matches(first, known, n=1)
+    hint = f"; did you mean {similar[0]}?" if similar else ""
+    return f"{arguments[0]!r}: unknown option{hint}"

@@ -1,0 +1,139 @@
+"""What a file is, for people and for programs."""
+
+import dataclasses
+import json
+from pathlib import Path
+
+from pipeline.track import TrackReader, is_track
+from pipeline.track.plain_values import to_plain
+from pipeline.track.schema import FORMAT
+from stages.focus import spelled
+from stages.media import MediaInfo, probe
+
+MOST_SHOTS = 12
+"""Shots of a track that are listed for people."""
+
+
+def describe(path: Path, *, as_json: bool) -> str:
+    """Describe a source or a mesh track.
+
+    Args:
+        path: A video, a still, a pattern of numbered stills or a track.
+        as_json: Whether to give JSON rather than lines.
+
+    Raises:
+        MediaError: If it cannot be read.
+        TrackError: If it is a damaged track; all of its frames are looked at.
+        OptionError: If a pattern has more than one number field.
+    """
+    if is_track(path):
+        with TrackReader(path) as track:
+            track.check()
+            return json.dumps(_facts(track), indent=2) if as_json else _aligned(_track_rows(track))
+    info = probe(path)
+    return json.dumps(info.as_dict(), indent=2) if as_json else _aligned(_rows(info))
+
+
+def _aligned(rows: list[tuple[str, str]]) -> str:
+    width = max(len(label) for label, _ in rows)
+    return "\n".join(f"{label:<{width}}  {_printable(value)}" for label, value in rows)
+
+
+def _printable(text: str) -> str:
+    """A stranger's text without what could command a terminal."""
+    return "".join(letter if letter.isprintable() else "?" for letter in text)
+
+
+def _facts(track: TrackReader) -> dict[str, object]:
+    """All that a track says about itself, but its meshes."""
+    header = track.header
+    return {
+        "file": str(track.path),
+        "kind": "track",
+        "format": FORMAT,
+        "program": header.program,
+        "libraries": dict(header.libraries),
+        "finished": header.finished,
+        "frame_range": str(header.frame_range),
+        "shots": list(track.shots),
+        "model": header.model.name,
+        "source": to_plain(header.source),
+        "info": header.info.as_dict(),
+        "options": dict(header.options),
+        "focus": spelled(header.job.foci),
+        "frames": [dataclasses.asdict(row) for row in track.rows],
+    }
+
+
+def _track_rows(track: TrackReader) -> list[tuple[str, str]]:
+    """Labels and values that say what a track is."""
+    header, rows, shots = track.header, track.rows, track.shots
+    ends = f"{rows[0].frame} to {rows[-1].frame}, {len(rows)} in all" if rows else "none"
+    if not header.finished:
+        ends += f"; unfinished, {header.frame_range} were asked for"
+    starts = ", ".join(map(str, shots[:MOST_SHOTS])) + (", ..." if len(shots) > MOST_SHOTS else "")
+    told = [
+        ("file", str(track.path)),
+        ("kind", f"mesh track of format {FORMAT}, by trimotion {header.program}"),
+        ("source", header.source.path),
+        ("size", _size(header.info)),
+        ("frames", ends),
+        ("shots", f"{len(shots)}, from frames {starts}" if shots else "none"),
+        ("colours", header.model.name),
+        ("focus", spelled(header.job.foci)),
+    ]
+    if rows:
+        counts = [row.triangle_count for row in rows]
+        told.append(("triangles", f"{min(counts)} to {max(counts)}"))
+        told.append(("mean rmse", f"{sum(row.rmse for row in rows) / len(rows):.2f}"))
+    return told
+
+
+def _rows(info: MediaInfo) -> list[tuple[str, str]]:
+    """Labels and values that say something about this source."""
+    rows = [
+        ("file", str(info.path)),
+        ("kind", f"{info.kind} ({info.container})"),
+        ("size", _size(info)),
+        ("codec", f"{info.codec}, {info.pixel_format}"),
+        ("colour", _color(info)),
+    ]
+    if info.frame_count is not None and info.kind != "image":
+        numbers = f", numbered from {info.first_frame}" if info.first_frame else ""
+        rows.append(("frames", f"{info.frame_count}{numbers}"))
+    if info.average_rate is not None:
+        rows.append(("rate", f"{float(info.average_rate):.6g} frames a second"))
+    if info.duration is not None:
+        rows.append(("duration", f"{float(info.duration):.3f} s"))
+    if info.start_time:
+        rows.append(("starts at", f"{float(info.start_time):.3f} s"))
+    if info.kind != "image":
+        rows.append(("time base", f"{info.time_base} s"))
+    rows.append(("audio", _audio(info)))
+    rows.extend(("note", note) for note in info.notes)
+    return rows
+
+
+def _size(info: MediaInfo) -> str:
+    text = f"{info.width}x{info.height} pixels"
+    shown = [f"turned by {info.rotation}"] if info.rotation else []
+    shown += ["mirrored"] if info.mirrored else []
+    if shown:
+        text += f" (stored {info.coded_width}x{info.coded_height}, {', '.join(shown)})"
+    if info.sample_aspect != 1:
+        text += f", pixel aspect {info.sample_aspect}"
+    return text
+
+
+def _color(info: MediaInfo) -> str:
+    text = f"{info.color_matrix}, {info.color_range} range"
+    return text if info.hdr is None else f"{text}, HDR ({info.hdr})"
+
+
+def _audio(info: MediaInfo) -> str:
+    if info.audio_codec is None:
+        return "none"
+    if info.audio_channels is None:
+        return info.audio_codec
+    noun = "channel" if info.audio_channels == 1 else "channels"
+    return f"{info.audio_codec}, {info.audio_channels} {noun}"

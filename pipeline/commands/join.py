@@ -1,0 +1,29 @@
+"""`trimotion join`: checked, then done."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from pipeline.track import join
+from pipeline.track.resume import check_track_name
+from warp_kernels.errors import OptionError, OutputError
+
+
+def join_tracks(parts: Sequence[Path], output: Path, *, overwrite: bool) -> None:
+    """Put tracks together.
+
+    Args:
+        parts: The tracks, in any order.
+        output: The joined track.
+        overwrite: Whether to replace an existing one.
+
+    Raises:
+        OptionError: If the parts do not follow each other, or the output is one of them.
+        OutputError: If the output exists or cannot be written.
+        TrackError: If a part cannot be joined.
+    """
+    check_track_name(output)
+    if output.resolve() in {part.resolve() for part in parts}:
+        raise OptionError(f"{output}: is one of the tracks that are joined; choose another name")
+    if output.exists() and not overwrite:
+        raise OutputError(output, "exists already", "choose another name or --overwrite")
+    join(parts, output)

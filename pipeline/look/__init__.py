@@ -1,0 +1,1 @@
+"""How solved frames are looked at on their way to the output: smoothing, regions, drawing."""

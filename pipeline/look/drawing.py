@@ -1,0 +1,132 @@
+"""Snapshots to frames of the output: drawn and encoded."""
+
+from contextlib import ExitStack
+from types import TracebackType
+
+from pipeline.job import Job
+from pipeline.look.drawn_frame import Take
+from pipeline.look.region_masks import own_mask
+from pipeline.look.smooth import Smoother
+from stages.look.fading import Fading
+from stages.look.strokes import Strokes
+from stages.masks.regions import open_masks
+from stages.media import MediaInfo, check_output, open_encoder
+from stages.render import Renderer
+from warp_kernels.device.device import Device
+from warp_kernels.scene.stroke_lay import Lay
+
+
+class Drawing:
+    """The output of a job; a context manager that leaves nothing under its name on a failure.
+
+    Args:
+        job: Says how the output looks and how it is written.
+        info: The source; gives times, pixel aspect and sound.
+        device: Where kernels run.
+
+    Raises:
+        OptionError: If an option does not fit the source.
+        OutputError: If the output cannot be written.
+    """
+
+    def __init__(self, job: Job, info: MediaInfo, device: Device) -> None:
+        picture = (info.width, info.height)
+        size = job.size_for(picture)
+        masked = tuple(region.style for region in job.regions)
+        followed = tuple(i for i, region in enumerate(job.regions) if region.frames)
+        self._renderer = Renderer(device, picture, size, job.shown_styles, masked, followed)
+        self._masks = open_masks(job.unfollowed, picture)
+        self._encoder = open_encoder(job.output, info, size, job.encode, job.frame_range)
+        # Where every frame starts anew, triangles of the same number have nothing in common.
+        self._blend = 0 if job.independent else job.blend
+        self._smoother = Smoother(0.0 if job.independent else job.smooth)
+        self._lays_strokes = job.lays_strokes
+        self._fading: Fading | None = None
+        self._strokes: Strokes | None = None
+        self._shot: int | None = None
+
+    @property
+    def notes(self) -> list[str]:
+        """Choices that were made, one sentence each; complete after the block."""
+        return self._encoder.notes
+
+    def draw(self, take: Take) -> None:
+        """Draw and encode a frame, or an earlier one that has been waiting for it."""
+        for smooth in self._smoother.add(take):
+            self._draw(smooth)
+
+    def _draw(self, take: Take) -> None:
+        self._follow(take)
+        if take.is_shown:
+            snapshot = take.snapshot
+            masks = [mask.at(snapshot.frame_index) for mask in self._masks]
+            pixels = self._renderer.render(
+                snapshot, self._fading, take.source, masks, take.shares, self._lay
+            )
+            self._encoder.write(pixels, snapshot.pts, snapshot.time_base, snapshot.frame_index)
+
+    def _follow(self, take: Take) -> None:
+        """Take on what lies on a frame from the one before, and what lingers of it."""
+        begins, snapshot = take.shot != self._shot, take.snapshot
+        self._shot = take.shot
+        if self._lays_strokes:
+            known = None if begins else self._strokes
+            mesh = snapshot.mesh
+            self._strokes = Strokes.begin(mesh) if known is None else known.followed_by(mesh)
+        if self._blend:
+            fading = None if begins else self._fading
+            if fading is None:
+                self._fading = Fading.begin(snapshot, self._blend, take.shares, self._lay)
+            else:
+                self._fading = fading.followed_by(snapshot, take.shares, self._lay)
+
+    @property
+    def _lay(self) -> Lay | None:
+        """How the strokes of the frame lie, if they go on from the one before."""
+        return None if self._strokes is None else self._strokes.lay
+
+    def __enter__(self) -> "Drawing":
+        self._encoder.__enter__()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        if error is not None:
+            self._close_masks()
+            self._encoder.__exit__(kind, error, trace)
+            return
+        with ExitStack() as closing:
+            closing.push(self._encoder)  # a failure of the last frames leaves nothing either
+            closing.callback(self._close_masks)
+            for take in self._smoother.rest():
+                self._draw(take)
+
+    def _close_masks(self) -> None:
+        for mask in self._masks:
+            mask.close()
+
+
+def check_drawing(job: Job, info: MediaInfo) -> None:
+    """Find out before any work is done whether the output can be written.
+
+    Args:
+        job: Says how the output looks and how it is written.
+        info: The source.
+
+    Raises:
+        OptionError: If an option does not fit the source.
+        MediaError: If a mask cannot be read.
+        OutputError: If the output cannot be written.
+    """
+    picture = (info.width, info.height)
+    for mask in open_masks(job.unfollowed, picture):
+        mask.close()
+    for region in job.followed:
+        for frame in region.frames:
+            own_mask(region, frame, picture)
+    size = job.size_for(picture)
+    check_output(job.output, info, size, job.encode, job.frame_range)

@@ -1,0 +1,30 @@
+"""Which frames of a track those of a range depend on when they are drawn."""
+
+from collections.abc import Sequence
+
+from pipeline.job import Job
+from pipeline.look.smooth import reach_of
+from pipeline.track import FrameRow
+
+
+def rows_around(rows: Sequence[FrameRow], shown: Sequence[FrameRow], job: Job) -> list[FrameRow]:
+    """The frames of a range, with those around them that they depend on.
+
+    These are of the shots with which the range begins and ends, and in step with it: a part of a
+    track looks as it does in the whole.
+
+    Args:
+        rows: All frames of the track.
+        shown: Those of the range, at least one.
+        job: Says over how many frames triangles fade in and paths are smoothed, and whether strokes
+            go on from frame to frame.
+    """
+    around = reach_of(job.smooth)
+    in_step = [row for row in rows if job.frame_range.is_in_step(row.frame)]
+    first, last = (in_step.index(row) for row in (shown[0], shown[-1]))
+    begin, end = max(0, first - around - job.blend), last + around + 1
+    if job.lays_strokes:
+        begin = 0  # strokes are where the shot's first frame and all motion since have put them
+    before = [row for row in in_step[begin:first] if row.shot == shown[0].shot]
+    after = [row for row in in_step[last + 1 : end] if row.shot == shown[-1].shot]
+    return [*before, *shown, *after]

@@ -1,0 +1,1 @@
+"""The loop over time: shots, motion between frames, threads and processes."""

@@ -1,0 +1,344 @@
+"""Video in, triangulated video out: the only loops over time.
+
+Solving turns frames into snapshots, drawing turns snapshots into frames. `animate` does both at
+once, `solve` the first and `render` the second, with a mesh track in between.
+"""
+
+from collections import deque
+from collections.abc import Generator, Iterable, Iterator
+from contextlib import closing, nullcontext
+from dataclasses import dataclass, replace
+from time import perf_counter
+
+import numpy as np
+
+from pipeline.job import Job
+from pipeline.look.drawing import Drawing, check_drawing
+from pipeline.look.drawn_frame import Take
+from pipeline.look.region_members import followed_shares
+from pipeline.look.rows_around import rows_around
+from pipeline.look.source_pictures import source_pictures
+from pipeline.loop.attention import Attention
+from pipeline.loop.expected_frames import expected_frames
+from pipeline.loop.motion import Step, check_cuts, open_around, steps
+from pipeline.loop.shots import with_shots
+from pipeline.loop.threads import Behind, ahead
+from pipeline.progress import Progress
+from pipeline.track import FrameRow, TrackReader, TrackWriter
+from pipeline.track.resume import Past, Reached, open_track, past_of
+from stages.frame import Frame
+from stages.masks.weight_maps import WeightMap
+from stages.media import Decoder, FrameRange, MediaInfo, open_decoder
+from stages.motion.advect import advect
+from stages.snapshot import Snapshot
+from stages.triangulate import Triangulator
+from warp_kernels.device.device import Device
+from warp_kernels.errors import OptionError
+
+DECODED_AHEAD = 3
+"""Decoded frames that may wait."""
+SOLVED_BEHIND = 3
+"""Triangulated frames that may wait to be drawn and encoded."""
+
+
+@dataclass(frozen=True)
+class Animated:
+    """What a finished job came to."""
+
+    frames: int
+    """Frames written."""
+    seconds: float
+    """Wall time, from the first frame's decoding to the finished file [s]."""
+    mean_rmse: float
+    """Mean over the frames of the root mean square error [code values]."""
+    warnings: tuple[str, ...]
+    """Damage that was met, one sentence each."""
+    notes: tuple[str, ...]
+    """Choices that were made, one sentence each."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Solved:
+    """What a frame became."""
+
+    snapshot: Snapshot
+    """Its triangles and colours."""
+    shot: int
+    """Number of the frame with which its shot begins."""
+    source: np.ndarray | None = None
+    """Its picture [code values], [H, W, 3]; None unless a look needs it."""
+    is_stored: bool = False
+    """Whether the track holds it already."""
+
+
+def animate(job: Job, progress: Progress) -> Animated:
+    """Convert a source at once; a job that follows regions needs `animate_in_parts`.
+
+    Nothing is written under the output's name unless the whole job succeeds; a track that the
+    job writes beside it keeps every frame that was solved.
+
+    Args:
+        job: What to do.
+        progress: Told of every finished frame.
+
+    Raises:
+        MediaError: If the source or the map of weights cannot be read.
+        OptionError: If an option does not fit the source, or regions are to be followed.
+        OutputError: If the output cannot be written.
+        TrackError: If the track to go on with cannot be.
+    """
+    if job.followed:
+        region = job.followed[0]
+        raise OptionError(
+            f"--region {region.mask}@{region.frames[0]}: a frame is drawn here before later ones "
+            "are solved, and this region may come from these; use animate_in_parts"
+        )
+    return _convert(job, progress, draws=True)
+
+
+def solve(job: Job, progress: Progress) -> Animated:
+    """Solve a source and write the mesh track alone.
+
+    Args:
+        job: What to do; `track` is what is written.
+        progress: Told of every finished frame.
+
+    Raises:
+        MediaError: If the source cannot be read.
+        OptionError: If an option does not fit the source.
+        OutputError: If the track cannot be written.
+        TrackError: If the track to go on with cannot be.
+    """
+    return _convert(job, progress, draws=False)
+
+
+def render(job: Job, track: TrackReader, info: MediaInfo, progress: Progress) -> Animated:
+    """Draw a track.
+
+    Args:
+        job: What to do, with the options that the track was made with.
+        track: Holds the snapshots.
+        info: The track's source as far as it can still be read.
+        progress: Told of every finished frame.
+
+    Raises:
+        MediaError: If the source is needed and cannot be read.
+        OptionError: If an option does not fit the track.
+        OutputError: If the output cannot be written.
+        TrackError: If the track is damaged.
+    """
+    begun = perf_counter()
+    check_drawing(job, info)
+    device = Device(job.device, job.threads)
+    shown = track.rows_in(job.frame_range)
+    rows = rows_around(track.rows, shown, job)
+    tally = _Tally(progress, len(shown))
+    drawing = Drawing(job, info, device)
+    with device, drawing, Behind(drawing.draw, SOLVED_BEHIND) as writer:
+        fitted, sources = _fitted(track, rows, job, device), source_pictures(job, rows)
+        shares = followed_shares(job, track, rows)
+        for snapshot, row, source, share in zip(fitted, rows, sources, shares, strict=True):
+            is_shown = shown[0].frame <= row.frame <= shown[-1].frame
+            writer.put(Take(snapshot, row.shot, is_shown, source, share))
+            if is_shown:
+                tally.add(row.triangle_count, snapshot.rmse)
+    return tally.result(begun, (), [*device.notes, *drawing.notes])
+
+
+def _convert(job: Job, progress: Progress, *, draws: bool) -> Animated:
+    """Solve a job, and draw it at once if that is wanted."""
+    begun = perf_counter()
+    past = past_of(job)
+    with open_around(job, None if past is None else past.reached) as decoder:
+        info = decoder.info
+        check_cuts(job.cuts, job.source, info)
+        if draws:
+            check_drawing(job, info)
+        device = Device(job.device, job.threads)
+        count = job.triangulate.refine.triangles
+        attention = Attention(job.foci, info, job.frame_range.step, count)
+        size = (info.width, info.height)
+        maps = [WeightMap(str(m.file), size, job.frame_range, m.strength) for m in job.maps]
+        triangulator = triangulator_of(job, size, device)
+        drawing = Drawing(job, info, device) if draws else None
+        tally = _Tally(progress, expected_frames(job.frame_range, info))
+        notes = [] if past is None else past.notes
+        found = _open_steps(decoder, attention, maps, job, past, notes)
+        with device, open_track(job, info, past) as track:
+            writer = Behind(_Writer(track, drawing), SOLVED_BEHIND)
+            with drawing or nullcontext(), closing(found), writer:
+                if past is not None:
+                    _recall(job, tally, writer if draws else None)
+                for solved in solved_frames(found, triangulator, job, past):
+                    writer.put(solved)
+                    tally.add(solved.snapshot.mesh.triangle_count, solved.snapshot.rmse)
+            if track is not None:
+                track.finish()
+    made = [] if drawing is None else drawing.notes
+    warnings = [*decoder.warnings, *(text for one in maps for text in one.warnings)]
+    told = [*device.notes, *decoder.notes, *notes, *attention.notes]
+    told += [note for one in maps for note in one.notes]
+    return tally.result(begun, warnings, [*told, *made])
+
+
+def triangulator_of(job: Job, size: tuple[int, int], device: Device) -> Triangulator:
+    """What makes snapshots of a source for the looks that will be drawn.
+
+    Args:
+        job: Says how pictures become triangles, and the looks.
+        size: Width and height of the source, upright [px].
+        device: Where kernels run.
+    """
+    return Triangulator(device, size, job.triangulate, job.fitted)
+
+
+def _open_steps(
+    decoder: Decoder,
+    attention: Attention,
+    maps: Iterable[WeightMap],
+    job: Job,
+    past: Past | None,
+    notes: list[str],
+) -> Generator[Step, None, None]:
+    """Decode and prepare frames ahead of the solution."""
+    reached = None if past is None else past.reached
+    found = prepared(decoder, decoder.info, attention, maps, job, reached, notes)
+    return ahead(found, DECODED_AHEAD)
+
+
+def prepared(
+    frames: Iterable[Frame],
+    info: MediaInfo,
+    attention: Attention,
+    maps: Iterable[WeightMap],
+    job: Job,
+    reached: Reached | None,
+    notes: list[str],
+) -> Iterator[Step]:
+    """Find cuts, weigh and estimate motion: all that frames go through before they are solved.
+
+    Args:
+        frames: The frames of the range and around it.
+        info: Their source.
+        attention: Weighs them by what `--focus` names.
+        maps: Weigh them by pictures.
+        job: Says what is wanted.
+        reached: Where an earlier run ended, or None.
+        notes: Receives what the user should know, one sentence each.
+    """
+    shot_frames = attention.beside(with_shots(frames, job.cuts))
+    found = steps(shot_frames, info, job, reached, notes)
+    for weights in maps:
+        found = _weighed(found, weights)
+    return found
+
+
+def _weighed(found: Iterable[Step], weights: WeightMap) -> Iterator[Step]:
+    """Steps whose frames have their weights; frames around the range need none."""
+    waiting: deque[Step] = deque()
+
+    def frames() -> Iterator[Frame]:
+        """The frames of the steps, which wait for them."""
+        for step in found:
+            waiting.append(step)
+            yield step.frame
+
+    for frame in weights.beside(frames()):
+        yield replace(waiting.popleft(), frame=frame)
+
+
+def solved_frames(
+    found: Iterable[Step], triangulator: Triangulator, job: Job, past: Past | None
+) -> Iterator[Solved]:
+    """Triangulate frame after frame, each from the mesh of the one before.
+
+    A picture that comes again, as in what is drawn for every other frame, keeps its mesh.
+
+    Args:
+        found: The frames, and the motion between them; one is taken for each that is given.
+        triangulator: Made by `triangulator_of` for the job.
+        job: Says how frames begin and what will be drawn.
+        past: What an earlier run left, or None.
+    """
+    snapshot = None if past is None else past.snapshot
+    for step in found:
+        if snapshot is not None and step.before is not None:
+            triangulator.recall(step.before, snapshot)
+        if snapshot is None or step.passage is None:
+            rng = np.random.default_rng([job.seed, step.frame.index])
+            snapshot = triangulator.first(step.frame, job.layout, rng)
+        elif step.repeats and not job.maps:
+            snapshot = snapshot.again(step.frame)
+        else:
+            carried = advect(snapshot.mesh, step.passage)
+            snapshot = triangulator.next(step.frame, carried, snapshot)
+        yield Solved(snapshot, step.shot, step.frame.pixels if job.needs_source else None)
+
+
+def _recall(job: Job, tally: "_Tally", writer: Behind[Solved] | None) -> None:
+    """Count what the track holds already, and draw it if that is wanted."""
+    assert job.track is not None
+    with TrackReader(job.track) as track:
+        rows = track.rows_in(job.frame_range)
+        sources = source_pictures(job, rows) if writer is not None else [None] * len(rows)
+        for row, source in zip(rows, sources, strict=True):
+            if writer is not None:
+                writer.put(Solved(track.snapshot(row.frame), row.shot, source, is_stored=True))
+            tally.add(row.triangle_count, row.rmse, is_told=writer is not None)
+
+
+def _fitted(
+    track: TrackReader, rows: list[FrameRow], job: Job, device: Device
+) -> Iterator[Snapshot]:
+    """The snapshots of a track; where a look needs other colours, these are fitted again."""
+    info = track.header.info
+    if job.fitted == track.header.model:
+        yield from track.snapshots(rows)
+        return
+    around = FrameRange(rows[0].frame, rows[-1].frame, track.header.frame_range.step)
+    triangulator = triangulator_of(job, (info.width, info.height), device)
+    wanted = {row.frame for row in rows}
+    with open_decoder(job.source, around, read=job.read) as decoder:
+        for frame in (frame for frame in decoder if frame.index in wanted):
+            yield triangulator.fit(frame, track.snapshot(frame.index).mesh)
+
+
+class _Tally:
+    """Counts finished frames and tells of them."""
+
+    def __init__(self, progress: Progress, total: int | None) -> None:
+        self._progress = progress
+        self._total = total
+        self._errors: list[float] = []
+        self._told = 0
+
+    def add(self, triangles: int, rmse: float, *, is_told: bool = True) -> None:
+        """Count a frame; what an earlier run told of is not told again."""
+        self._errors.append(rmse)
+        if is_told:
+            self._told += 1
+            self._progress.frame(len(self._errors), self._total, triangles, rmse)
+
+    def result(self, begun: float, warnings: Iterable[str], notes: Iterable[str]) -> Animated:
+        """What the job came to."""
+        return Animated(
+            frames=self._told,
+            seconds=perf_counter() - begun,
+            mean_rmse=float(np.mean(self._errors)),
+            warnings=tuple(warnings),
+            notes=tuple(notes),
+        )
+
+
+class _Writer:
+    """Stores a solved frame, and draws it."""
+
+    def __init__(self, track: TrackWriter | None, drawing: Drawing | None) -> None:
+        self._track = track
+        self._drawing = drawing
+
+    def __call__(self, solved: Solved) -> None:
+        if self._track is not None and not solved.is_stored:
+            self._track.write(solved.snapshot, solved.shot)
+        if self._drawing is not None:
+            self._drawing.draw(Take(solved.snapshot, solved.shot, source=solved.source))

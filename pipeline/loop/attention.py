@@ -1,0 +1,207 @@
+"""Weights of the frames of a clip, from what `--focus` names: nothing of it switches in time.
+
+The weights of a frame follow from the frames of its shot up to `reach_of` around it, so ranges that
+begin with a shot, a solution that goes on and `--jobs` give the bits of the whole.
+"""
+
+from collections import deque
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
+from typing import Protocol
+
+import numpy as np
+
+from pipeline.loop.face_tracks import MEMORY, SPACING, FaceTracks
+from pipeline.loop.shots import ShotFrame
+from stages.focus import Focus, Glance, spelled
+from stages.focus.faces import Faces
+from stages.focus.maps import enlarged
+from stages.focus.search import FaceSearch
+from stages.frame import Frame
+from stages.media import MediaInfo
+
+UNIT = 8
+"""Weight of a pixel that counts once, so that an eighth can be told; the most is 255."""
+GAIN = 4.0
+"""What a map adds where it is 1."""
+SMALL, AMPLE = 12.0, 40.0
+"""Area of a triangle in the mean [px^2] up to which faces add nothing and from which all that they
+can: where triangles are hardly larger than pixels, more of them fit no better."""
+WINDOW = 6
+"""Frames before and after one that a map is smoothed over, the nearer the more."""
+
+
+class _Part(Protocol):
+    """One member of `--focus`, over the frames of one shot."""
+
+    def see(self, frame: Frame, *, is_last: bool) -> None:
+        """Take one more frame."""
+
+    def knows(self, index: int) -> bool:
+        """Whether what it adds to a frame can be told."""
+        ...
+
+    def added(self, index: int) -> np.ndarray | None:
+        """What it adds to the weight 1 of every pixel, [h, w] float32, or None."""
+        ...
+
+
+class Attention:
+    """Gives frames their weights.
+
+    Args:
+        members: What counts more; see `stages.focus.resolved`.
+        info: The source.
+        step: Distance of the frames that are given, in numbers.
+        triangles: How many there will be.
+
+    Raises:
+        OptionError: If the network that finds faces is missing.
+    """
+
+    def __init__(
+        self, members: Sequence[Focus], info: MediaInfo, step: int, triangles: int
+    ) -> None:
+        self._members = [m for m in members if isinstance(m, Faces | Glance)]
+        self._info = info
+        self._step = step
+        faces = any(isinstance(member, Faces) for member in members)
+        self._search = FaceSearch() if faces else None
+        self.notes: list[str] = []
+        """What was found, one sentence each; complete once the last frame was given."""
+        self._found = False
+        area = info.width * info.height / max(1, triangles)
+        self._room = min(max((area - SMALL) / (AMPLE - SMALL), 0.0), 1.0)
+        self._spelled = spelled(members)
+
+    def beside(self, shot_frames: Iterable[ShotFrame]) -> Iterator[ShotFrame]:
+        """Give frames their weights.
+
+        Args:
+            shot_frames: Frames in order.
+        """
+        waiting: deque[ShotFrame] = deque()
+        parts: list[_Part] = []
+        # without members nothing is looked for, and no frame waits for the next one
+        for shot_frame, is_last in _with_ends(shot_frames) if self._members else ():
+            if shot_frame.opens_shot or not parts:
+                parts = [self._part(member) for member in self._members]
+            for part in parts:
+                part.see(shot_frame.frame, is_last=is_last)
+            waiting.append(shot_frame)
+            while waiting and all(part.knows(waiting[0].frame.index) for part in parts):
+                told = waiting.popleft()
+                yield replace(told, frame=self._weighed(told.frame, parts))
+        if not self._members:
+            yield from shot_frames
+        if self._search is not None:
+            found = "faces found" if self._found else "no face found"
+            self.notes.append(f"--focus {self._spelled}: {found}")
+        elif self._spelled != "none":
+            self.notes.append(f"--focus {self._spelled}")
+
+    def _part(self, member: Focus) -> _Part:
+        """What a member becomes over one shot."""
+        if isinstance(member, Glance):
+            return _Glances(member)
+        assert self._search is not None
+        size = (self._info.width, self._info.height)
+        is_still = self._info.kind == "image"
+        return FaceTracks(self._search, size, self._step, is_still=is_still)
+
+    def _weighed(self, frame: Frame, parts: Sequence[_Part]) -> Frame:
+        """A frame with the weights that all members together give it."""
+        total: np.ndarray | None = None
+        for member, part in zip(self._members, parts, strict=True):
+            added = part.added(frame.index)
+            if added is None:
+                continue
+            strength = member.strength
+            if isinstance(member, Faces):
+                self._found, strength = True, strength * self._room
+            added = enlarged(np.float32(strength) * added, (frame.width, frame.height))
+            total = added if total is None else total + added
+        if total is None:
+            return frame
+        weights = np.minimum(np.rint(UNIT + UNIT * total), 255.0).astype(np.uint8)
+        return frame if (weights == UNIT).all() else replace(frame, weights=weights)
+
+
+class _Glances:
+    """Maps of the frames of a shot, each smoothed over those around it."""
+
+    def __init__(self, member: Glance) -> None:
+        self._member = member
+        self._maps: deque[tuple[int, np.ndarray]] = deque()
+        self._before: Frame | None = None
+        self._ended = False
+
+    def see(self, frame: Frame, *, is_last: bool) -> None:
+        """Take one more frame of the shot.
+
+        Args:
+            frame: The next frame.
+            is_last: Whether the shot ends with it.
+        """
+        self._maps.append((frame.index, self._member.glance(self._before, frame)))
+        self._before = frame
+        self._ended = is_last
+
+    def knows(self, index: int) -> bool:
+        """Whether enough has been seen for a frame.
+
+        Args:
+            index: Number of the frame, which was seen.
+        """
+        return self._ended or self._place(index) + WINDOW < len(self._maps)
+
+    def added(self, index: int) -> np.ndarray | None:
+        """What the map adds to the weights of a frame; to be asked in order, once it is known.
+
+        Args:
+            index: Number of the frame.
+
+        Returns:
+            [h, w] float32 of any size, or None for nothing.
+        """
+        place = self._place(index)
+        while place > WINDOW:
+            self._maps.popleft()
+            place -= 1
+        total: np.ndarray = np.zeros((1, 1), dtype=np.float32)
+        count = 0.0
+        for other, (_, seen) in enumerate(self._maps):
+            nearness = 1.0 - abs(other - place) / (WINDOW + 1)
+            if nearness > 0:
+                total = total + np.float32(nearness) * seen
+                count += nearness
+        return np.float32(GAIN / count) * total if total.any() else None
+
+    def _place(self, index: int) -> int:
+        return next(place for place, (other, _) in enumerate(self._maps) if other == index)
+
+
+def reach_of(members: Iterable[Focus]) -> tuple[int, int]:
+    """Frames before and after one on which its weights may depend.
+
+    Args:
+        members: What counts more.
+    """
+    before = after = 0
+    for member in members:
+        if isinstance(member, Faces):  # a frame later it is known whether the shot goes on
+            before, after = max(before, MEMORY), max(after, SPACING + 1)
+        elif isinstance(member, Glance):
+            before, after = max(before, WINDOW + 1), max(after, WINDOW + 1)
+    return before, after
+
+
+def _with_ends(shot_frames: Iterable[ShotFrame]) -> Iterator[tuple[ShotFrame, bool]]:
+    """Frames, and whether their shot ends with them."""
+    held: ShotFrame | None = None
+    for shot_frame in shot_frames:
+        if held is not None:
+            yield held, shot_frame.opens_shot
+        held = shot_frame
+    if held is not None:
+        yield held, True

@@ -1,0 +1,100 @@
+"""Ranges of whole shots: what separate runs, or separate machines, can solve on their own."""
+
+import json
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from pipeline.job import Job
+from pipeline.loop.motion import check_cuts, holds, open_around
+from pipeline.loop.shots import with_shots
+from stages.media import FrameRange
+from warp_kernels.errors import OptionError
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Ranges that together are all of what is wanted."""
+
+    source: Path
+    """What will be solved."""
+    shots: tuple[FrameRange, ...]
+    """One range for each shot, in order."""
+    ranges: tuple[FrameRange, ...]
+    """Ranges of one shot or of several that follow each other, in order."""
+
+    @property
+    def frames(self) -> int:
+        """Number of frames."""
+        return sum(map(_length, self.ranges))
+
+    def as_json(self) -> str:
+        """All figures."""
+        return json.dumps(
+            {
+                "source": str(self.source),
+                "frames": self.frames,
+                "shots": [shot.first for shot in self.shots],
+                "ranges": [_as_dict(part) for part in self.ranges],
+            },
+            indent=2,
+        )
+
+    def as_lines(self) -> str:
+        """One range a line, as `--frames` takes it."""
+        return "\n".join(map(str, self.ranges))
+
+
+def plan(job: Job, parts: int | None = None) -> Plan:
+    """Find the shots of a source and share them out.
+
+    Args:
+        job: Says which frames of which source, and where cuts are.
+        parts: Most ranges that are made, as even as whole shots allow; None for one a shot.
+
+    Raises:
+        OptionError: If `parts` is below 1, or there is no frame.
+        MediaError: If the source or the list of cuts cannot be read.
+    """
+    if parts is not None and parts < 1:
+        raise OptionError(f"--parts {parts}: must be 1 or more")
+    starts: list[int] = []
+    last = -1
+    with open_around(job, None) as decoder:
+        check_cuts(job.cuts, job.source, decoder.info)
+        for shot_frame in with_shots(decoder, job.cuts):
+            frame = shot_frame.frame
+            if holds(job.frame_range, frame, decoder.info):
+                last = frame.index
+                if shot_frame.opens_shot or not starts:
+                    starts.append(last)
+    step = job.frame_range.step
+    ends = [*(start - step for start in starts[1:]), last]
+    shots = tuple(FrameRange(a, b, step) for a, b in zip(starts, ends, strict=True))
+    return Plan(job.source, shots, shots if parts is None else _shared(shots, parts))
+
+
+def _shared(shots: tuple[FrameRange, ...], parts: int) -> tuple[FrameRange, ...]:
+    """Put shots together, each to the part in which its middle lies."""
+    total = sum(map(_length, shots))
+    ranges: dict[int, FrameRange] = {}
+    before = 0
+    for shot in shots:
+        part = int((before + _length(shot) / 2) * parts / total)
+        ranges[part] = replace(ranges.get(part, shot), last=shot.last)
+        before += _length(shot)
+    return tuple(ranges.values())
+
+
+def _length(part: FrameRange) -> int:
+    assert part.last is not None
+    return (part.last - part.first) // part.step + 1
+
+
+def _as_dict(part: FrameRange) -> dict[str, object]:
+    return {
+        "frames": str(part),
+        "first": part.first,
+        "last": part.last,
+        "step": part.step,
+        "count": _length(part),
+    }

@@ -1,0 +1,1 @@
+"""Options: what is declared, how values are read, and the job that they make."""

@@ -1,0 +1,51 @@
+"""Options from a TOML file: `triangles = 3000`, `style = ["flat", "edges:width=1"]`."""
+
+import tomllib
+from pathlib import Path
+
+from pipeline.options.command_line import job_options
+from pipeline.options.option_value import option_value
+from pipeline.options.text_file import read_text
+from warp_kernels.errors import OptionError
+
+SHIPPED = Path(__file__).parents[1] / "presets"
+"""Folder of the presets that are known by name alone."""
+
+
+def shipped_presets() -> list[str]:
+    """Names of the presets that come with the program."""
+    return sorted(path.stem for path in SHIPPED.glob("*.toml"))
+
+
+def read_preset(name: str) -> dict[str, object]:
+    """Read a preset.
+
+    Args:
+        name: A TOML file, or the name of a shipped preset.
+
+    Returns:
+        Values by field name, as the command line would give them.
+
+    Raises:
+        OptionError: If it cannot be read, or holds anything that is not an option.
+    """
+    path = SHIPPED / f"{name}.toml" if name in shipped_presets() else Path(name)
+    try:
+        table = tomllib.loads(read_text(path))
+    except OSError as error:
+        raise OptionError(
+            f"--preset {name}: cannot be read ({str(error.strerror).lower()}); give a TOML file "
+            f"or one of {', '.join(shipped_presets())}"
+        ) from error
+    except ValueError as error:
+        raise OptionError(f"--preset {name}: not a TOML file ({error}); mend it") from error
+    options = {option.flag: option for option in job_options()}
+    values: dict[str, object] = {}
+    for key, value in table.items():
+        option = options.get(key.replace("_", "-"))
+        if option is None:
+            raise OptionError(
+                f"--preset {name}: unknown option {key!r}; the options are {', '.join(options)}"
+            )
+        values[option.dest] = option_value(option, value, f"--preset {name}: {key}")
+    return values

@@ -1,0 +1,28 @@
+"""Lists of cuts: the first frame of each new shot, as a file of the user says."""
+
+import json
+from pathlib import Path
+
+from pipeline.options.text_file import read_text
+from warp_kernels.errors import MediaError
+
+
+def read_cuts(path: Path) -> frozenset[int]:
+    """Read a list of cuts: JSON or plain text, the first frame of each new shot.
+
+    Raises:
+        MediaError: If the file cannot be read or holds something else.
+    """
+    remedy = "list the first frame of each new shot, as JSON [40, 76] or one number a line"
+    try:
+        text = read_text(path)
+    except (OSError, UnicodeDecodeError) as error:
+        raise MediaError(path, f"the list of cuts cannot be read ({error})", remedy) from error
+    try:
+        numbers = json.loads(text) if text.lstrip().startswith("[") else text.split()
+        cuts = frozenset(int(str(number)) for number in numbers)  # 2.5 and true are no frames
+    except (ValueError, TypeError) as error:
+        raise MediaError(path, f"is no list of cuts ({error})", remedy) from error
+    if min(cuts, default=0) < 0:
+        raise MediaError(path, f"a cut at frame {min(cuts)}", remedy)
+    return cuts

@@ -1,0 +1,1 @@
+"""A snapshot as it is drawn: paint, cross-fades, the contact sheet."""

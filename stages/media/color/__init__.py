@@ -1,0 +1,1 @@
+"""Stored pixels to RGB and back: matrices, ranges, profiles, high dynamic range."""

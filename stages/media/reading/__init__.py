@@ -1,0 +1,1 @@
+"""A source, from its header to upright RGB frames."""

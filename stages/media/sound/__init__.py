@@ -1,0 +1,1 @@
+"""The source's sound, carried over or converted."""

@@ -1,0 +1,1 @@
+"""An output, from its plan to the finished file."""

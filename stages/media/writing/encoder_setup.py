@@ -1,0 +1,135 @@
+"""Settings of a video encoder."""
+
+import os
+from dataclasses import dataclass, field
+from fractions import Fraction
+
+import av
+from av.video.codeccontext import VideoCodecContext
+
+from stages.media.color.yuv import tag_bt709
+from stages.media.reading.container import DAMAGE, reason_of
+from stages.media.sound.audio_plan import MODES
+from stages.media.writing.codecs import Encoder
+from warp_kernels.errors import OptionError
+
+SVT_LOG = "SVT_LOG"
+"""Environment variable that says how much the AV1 encoder prints."""
+
+
+@dataclass(frozen=True)
+class EncodeOptions:
+    """How an output is written."""
+
+    codec: str | None = field(
+        default=None,
+        metadata={"help": "video codec: h264, h265, av1, vp9, prores or ffv1 (by the ending)"},
+    )
+    crf: int | None = field(
+        default=None,
+        metadata={"help": "constant quality of the codec, smaller is better and larger"},
+    )
+    pixel_format: str | None = field(
+        default=None,
+        metadata={"help": "yuv420p plays everywhere; yuv444p keeps coloured edges sharp"},
+    )
+    encoder_preset: str | None = field(
+        default=None,
+        metadata={"help": "speed of the encoder, such as veryfast or slow for h264 and h265"},
+    )
+    audio: bool = field(default=True, metadata={"help": "carry the source's audio over"})
+    audio_mode: str = field(
+        default="auto",
+        metadata={
+            "help": "copy carries the source's audio packet by packet, aac makes AAC of it, auto "
+            "copies what players of the format play",
+            "choices": MODES,
+            "flag": "audio",
+        },
+    )
+    overwrite: bool = field(default=False, metadata={"help": "replace an existing output"})
+    threads: int = field(default=0, metadata={"help": "encoder threads, 0 for one per core"})
+
+
+def settings_of(encoder: Encoder, options: EncodeOptions) -> dict[str, str]:
+    """Options for FFmpeg.
+
+    Args:
+        encoder: The encoder.
+        options: What the user chose.
+    """
+    settings = dict(encoder.options)
+    if options.encoder_preset is not None:
+        settings["preset"] = options.encoder_preset
+    quality = encoder.quality if options.crf is None else options.crf
+    if quality is not None:
+        settings["crf"] = str(quality)
+    return settings
+
+
+def set_up(
+    codec: VideoCodecContext,
+    pixel_format: str,
+    size: tuple[int, int],
+    clock: Fraction,
+    threads: int,
+) -> None:
+    """Fill in what every encoder needs before it is opened.
+
+    Args:
+        codec: The encoder.
+        pixel_format: Format of the frames.
+        size: Width and height of the frames [px].
+        clock: Seconds per unit of pts.
+        threads: Encoder threads, 0 for one per core.
+    """
+    codec.width, codec.height = size
+    codec.pix_fmt = pixel_format
+    codec.time_base = clock
+    codec.thread_count = threads
+    if pixel_format.startswith("yuv"):
+        tag_bt709(codec)
+
+
+def open_quietly(codec: VideoCodecContext) -> None:
+    """Open an encoder that was set up; one of them prints a banner but for a variable.
+
+    Args:
+        codec: The encoder.
+    """
+    before = os.environ.get(SVT_LOG)
+    if codec.name == "libsvtav1" and before is None:
+        os.environ[SVT_LOG] = "1"
+    try:
+        codec.open()
+    finally:
+        if before is None:
+            os.environ.pop(SVT_LOG, None)
+
+
+def try_encoder(
+    encoder: Encoder, pixel_format: str, size: tuple[int, int], options: EncodeOptions
+) -> None:
+    """Open an encoder once, so that what it refuses is known before any work is done.
+
+    Args:
+        encoder: The encoder.
+        pixel_format: Format of the frames.
+        size: Width and height of the frames [px].
+        options: What the user chose.
+
+    Raises:
+        OptionError: If it does not open.
+    """
+    codec = av.CodecContext.create(encoder.name, "w")
+    assert isinstance(codec, VideoCodecContext)
+    codec.options = settings_of(encoder, options)
+    codec.framerate = Fraction(25)
+    set_up(codec, pixel_format, size, Fraction(1, 25), options.threads)
+    try:
+        open_quietly(codec)
+    except DAMAGE as error:
+        raise OptionError(
+            f"{encoder.name} refuses {size[0]}x{size[1]} in {pixel_format} ({reason_of(error)}); "
+            "choose another size, codec or pixel format"
+        ) from error

@@ -1,0 +1,256 @@
+"""What will be written, decided and checked before any work is done."""
+
+import io
+import os
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from pathlib import Path
+
+import av
+
+from stages.media.frame_range import FrameRange
+from stages.media.naming import STILL_ENDINGS, NumberedPattern
+from stages.media.reading.info import MediaInfo
+from stages.media.sound.audio_plan import AudioPlan, plan_audio
+from stages.media.writing.codecs import CONTAINERS, Container, Encoder, find_encoder
+from stages.media.writing.commit import output_error, remove_left_overs, true_place
+from stages.media.writing.encoder_setup import EncodeOptions, try_encoder
+from warp_kernels.errors import OptionError, OutputError
+
+
+@dataclass(frozen=True)
+class OutputPlan:
+    """A checked output."""
+
+    path: Path
+    """The file, or the pattern of the stills."""
+    pattern: NumberedPattern | None
+    """Pattern of numbered stills, or None."""
+    container: Container | None
+    """File format of a video or GIF; None for stills."""
+    encoder: Encoder | None
+    """Video encoder; None for stills."""
+    pixel_format: str
+    """Format that the encoder takes; empty for stills."""
+    width: int
+    """Width of the pictures that are handed over [px]."""
+    height: int
+    """Height of the pictures that are handed over [px]."""
+    audio: AudioPlan | None
+    """How the source's audio gets there; None without."""
+    notes: tuple[str, ...]
+    """Choices that were made, one sentence each."""
+
+    @property
+    def padded_width(self) -> int:
+        """Width of the written picture [px]: even where the pixel format needs it."""
+        return self.width + (self.width & 1 if self._pads(("yuv420", "yuv422")) else 0)
+
+    @property
+    def padded_height(self) -> int:
+        """Height of the written picture [px]: even where the pixel format needs it."""
+        return self.height + (self.height & 1 if self._pads(("yuv420",)) else 0)
+
+    def _pads(self, halved: tuple[str, ...]) -> bool:
+        if self.encoder is None or self.encoder.odd_sizes:
+            return False
+        return self.pixel_format.startswith(halved)
+
+
+WHOLE = FrameRange()
+"""Every frame."""
+
+
+def check_output(
+    path: str | Path,
+    source: MediaInfo,
+    size: tuple[int, int],
+    options: EncodeOptions,
+    frame_range: FrameRange = WHOLE,
+) -> OutputPlan:
+    """Find out, before any work is done, whether an output can be written.
+
+    Args:
+        path: Output file, or a pattern of numbered stills; its ending chooses the format.
+        source: What is converted.
+        size: Width and height of the pictures that will be handed over [px].
+        options: How to write.
+        frame_range: The frames that are converted.
+
+    Returns:
+        What will be done; its notes tell the choices.
+
+    Raises:
+        OptionError: If the ending, the codec and the options do not go together.
+        OutputError: If the file exists, is the input, or its folder cannot be written.
+    """
+    pattern = NumberedPattern.parse(path)
+    target = Path(path)
+    ending = pattern.ending if pattern else target.suffix.lower()
+    if min(size) < 1:
+        raise OptionError(f"size {size[0]}x{size[1]}: at least one pixel each way; choose a size")
+    if ending in CONTAINERS and pattern is None:
+        plan = _plan_video(target, ending, source, size, options)
+    elif ending in STILL_ENDINGS:
+        plan = _plan_stills(target, pattern, source, size, options, frame_range)
+    else:
+        raise OptionError(
+            f"output {path}: {'numbered ' if pattern else ''}files of ending {ending or '(none)'} "
+            f"cannot be written; use {' '.join([*CONTAINERS, *sorted(STILL_ENDINGS)])}"
+        )
+    _check_place(plan, source, options, frame_range)
+    return plan
+
+
+def _plan_video(
+    target: Path, ending: str, source: MediaInfo, size: tuple[int, int], options: EncodeOptions
+) -> OutputPlan:
+    container = CONTAINERS[ending]
+    encoder = find_encoder(options.codec or container.codec)
+    _check_holds(container, encoder, ending)
+    pixel_format = options.pixel_format or encoder.pixel_formats[0]
+    if pixel_format not in encoder.pixel_formats:
+        raise OptionError(
+            f"pixel format {pixel_format!r}: {encoder.name} does not take it; "
+            f"choose one of {', '.join(encoder.pixel_formats)}"
+        )
+    _check_quality(encoder, options)
+    notes = []
+    audio = None
+    if options.audio and source.audio_codec is not None:
+        if container.audio is None:
+            notes.append(f"{ending} holds no sound: the audio is left out")
+        else:
+            audio = plan_audio(source.path, container, options.audio_mode)
+            notes += audio.notes if audio else []
+    if container.format == "gif" and source.sample_aspect != 1:
+        notes.append(f"{ending} has square pixels only: the picture will look stretched")
+    if container.format in ("matroska", "webm"):
+        if 1000 % source.time_base.denominator:
+            notes.append(f"{ending} keeps times in whole milliseconds: they are rounded")
+        if source.sample_aspect != 1 and encoder.name not in ("libx264", "libx265"):
+            notes.append(
+                f"{ending} with {encoder.name} loses the pixel aspect {source.sample_aspect}: "
+                "the picture will look stretched"
+            )
+    plan = _note_padding(
+        OutputPlan(
+            target, None, container, encoder, pixel_format, size[0], size[1], audio, tuple(notes)
+        )
+    )
+    try_encoder(encoder, pixel_format, (plan.padded_width, plan.padded_height), options)
+    return plan
+
+
+def _note_padding(plan: OutputPlan) -> OutputPlan:
+    if (plan.padded_width, plan.padded_height) == (plan.width, plan.height):
+        return plan
+    note = (
+        f"{plan.width}x{plan.height} is odd and {plan.pixel_format} needs even sizes: "
+        f"border pixels repeated to {plan.padded_width}x{plan.padded_height}"
+    )
+    return replace(plan, notes=(*plan.notes, note))
+
+
+def _plan_stills(
+    target: Path,
+    pattern: NumberedPattern | None,
+    source: MediaInfo,
+    size: tuple[int, int],
+    options: EncodeOptions,
+    frame_range: FrameRange,
+) -> OutputPlan:
+    if pattern is None and source.frame_count != 1 and not frame_range.is_single:
+        stem, ending = target.stem, target.suffix
+        raise OptionError(
+            f"output {target}: one still cannot hold {source.frame_count or 'many'} frames; "
+            f"write {stem}_####{ending}, or choose one frame with --frames N"
+        )
+    if options.codec is not None or options.pixel_format is not None:
+        raise OptionError(
+            f"codec {options.codec}, pixel format {options.pixel_format}: stills have none to "
+            "choose; leave these options out"
+        )
+    if options.crf is not None and not 0 <= options.crf <= 51:
+        raise OptionError(f"crf {options.crf}: choose a value from 0 to 51")
+    notes = ["stills hold no sound: the audio is left out"] if source.audio_codec else []
+    if not options.audio:
+        notes = []
+    return OutputPlan(target, pattern, None, None, "", size[0], size[1], None, tuple(notes))
+
+
+def _check_holds(container: Container, encoder: Encoder, ending: str) -> None:
+    trial = av.open(io.BytesIO(), "w", format=container.format)
+    try:
+        trial.add_stream(encoder.name, rate=25)
+    except ValueError as error:
+        raise OptionError(
+            f"codec of {encoder.name}: {ending} cannot hold it; use .mkv or another codec"
+        ) from error
+    finally:
+        trial.close()
+
+
+def _check_quality(encoder: Encoder, options: EncodeOptions) -> None:
+    if options.crf is not None:
+        if encoder.quality is None:
+            raise OptionError(
+                f"crf {options.crf}: {encoder.name} has no constant quality; leave it out"
+            )
+        if not encoder.best_quality <= options.crf <= encoder.worst_quality:
+            raise OptionError(
+                f"crf {options.crf}: {encoder.name} takes {encoder.best_quality} to "
+                f"{encoder.worst_quality}"
+            )
+    if options.encoder_preset is not None and options.encoder_preset not in encoder.presets:
+        raise OptionError(
+            f"encoder preset {options.encoder_preset!r}: {encoder.name} takes "
+            f"{', '.join(encoder.presets) or 'none; leave it out'}"
+        )
+
+
+def _check_place(
+    plan: OutputPlan, source: MediaInfo, options: EncodeOptions, frame_range: FrameRange
+) -> None:
+    place = true_place(plan.path)
+    folder = place.parent
+    if not folder.is_dir():
+        raise OutputError(plan.path, f"there is no folder {folder}", "create it first")
+    if place.is_dir():
+        raise OutputError(plan.path, "is a folder", "give the name of a file")
+    if place.is_symlink() or (place.exists() and not place.is_file()):
+        raise OutputError(plan.path, "is no regular file", "give the name of a file")
+    existing = _existing(plan, frame_range)
+    if _is_source(plan, existing, source):
+        raise OutputError(plan.path, "is the input itself", "choose another name")
+    if existing and not options.overwrite:
+        raise OutputError(existing[0], "exists already", "choose another name or --overwrite")
+    remove_left_overs(folder)
+    probe = folder / f".trimotion-{os.getpid()}.test"
+    try:
+        probe.touch()
+        probe.unlink()
+    except OSError as error:
+        raise output_error(plan.path, error) from error
+
+
+def _existing(plan: OutputPlan, frame_range: FrameRange) -> list[Path]:
+    if plan.pattern is None:
+        return [plan.path] if os.path.lexists(plan.path) else []
+    wanted = (n for n in plan.pattern.numbers(links=True) if frame_range.holds(n, Fraction(0)))
+    return [plan.pattern.path_for(number) for number in wanted]
+
+
+def _is_source(plan: OutputPlan, existing: list[Path], source: MediaInfo) -> bool:
+    if not existing:
+        return False
+    inputs = [source.path]
+    pattern = NumberedPattern.parse(source.path) if source.kind == "sequence" else None
+    if pattern is not None:
+        inputs = [pattern.path_for(number) for number in pattern.numbers()]
+    known = {path.resolve() for path in inputs}
+    if any(path.resolve() in known for path in existing):
+        return True
+    if not inputs or not inputs[0].exists():  # a track is drawn without its source
+        return False
+    return any(path.is_file() and path.samefile(inputs[0]) for path in existing[:1])

@@ -1,0 +1,58 @@
+"""What holds the vertices of a followed mesh to where the motion took them."""
+
+import numpy as np
+
+from stages.mesh import Mesh
+from stages.motion.advect import Carried
+
+REST_FIRMNESS, FIRMEST = 1.5, 4.0
+"""Where weights lead triangles elsewhere the spring grows with this power of the mean weight beside
+the median one, up to so many times."""
+
+
+def springs_of(
+    mesh: Mesh, seed: Carried, strength: float, weights: np.ndarray | None
+) -> np.ndarray:
+    """Where the temporal term holds each vertex, and how strongly; new ones are free.
+
+    Args:
+        mesh: What has become of the seed.
+        seed: Where the motion took the vertices.
+        strength: Of the spring where the motion is certain [code value^2].
+        weights: The picture's: what pulls at a vertex grows with them, and so must its spring;
+            [H, W] uint8, or None.
+
+    Returns:
+        Places [px] and strengths [code value^2], [V, 3].
+    """
+    springs = np.zeros((mesh.vertex_count, 3))
+    springs[:, :2] = mesh.vertices
+    old = np.searchsorted(seed.mesh.vertex_ids, mesh.vertex_ids)
+    known = mesh.vertex_ids < seed.mesh.next_vertex_id
+    springs[known, :2] = seed.mesh.vertices[old[known]]
+    springs[known, 2] = strength * seed.trust[old[known]]
+    if weights is not None:
+        springs[:, 2] *= _firmness(weights, springs[:, :2])
+    return springs
+
+
+def _firmness(weights: np.ndarray, points: np.ndarray) -> np.ndarray:
+    """How much firmer springs are for the weights of a picture.
+
+    What pulls at a vertex grows with the weights around it, and so does its spring. The rest of
+    the picture has fewer triangles than without weights, which show more of every change: there
+    vertices are held the more firmly the more of them went elsewhere.
+
+    Args:
+        weights: [H, W] uint8.
+        points: Positions [px], [N, 2].
+
+    Returns:
+        1 where all weights are alike, [N].
+    """
+    mean = float(weights.mean())
+    rest = (mean / float(np.median(weights))) ** REST_FIRMNESS
+    size = np.array(weights.shape[::-1])
+    columns, rows = np.clip(points.astype(np.int64), 0, size - 1).T
+    firmer: np.ndarray = np.maximum(weights[rows, columns] / mean, min(rest, FIRMEST))
+    return firmer

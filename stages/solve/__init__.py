@@ -1,0 +1,1 @@
+"""One picture solved: approximation, convergence, the search for a quality."""

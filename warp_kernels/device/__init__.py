@@ -1,0 +1,1 @@
+"""The device: where kernels run, its threads and its phases."""

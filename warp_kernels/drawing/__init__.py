@@ -1,0 +1,1 @@
+"""Kernels that draw: coverage of samples, layers, blending, the canvas."""

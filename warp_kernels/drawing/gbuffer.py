@@ -1,0 +1,134 @@
+"""Which triangle lies under every sample of a band of the output.
+
+A whole output has nine samples a pixel, more than the caches hold; a band fits.
+
+Coverage is that of `raster`: each sample belongs to exactly one triangle, so neither a gap nor a
+doubled border can show, and no order of threads matters.
+"""
+
+import warp as wp
+
+from warp_kernels.device.device import Device, Phase
+from warp_kernels.raster import SUBPIXELS, column_of, to_fixed, walk_edge
+
+wp.set_module_options({"enable_backward": False, "fuse_fp": False})
+
+_UNIT = wp.constant(SUBPIXELS)
+LEAST_ROWS = 1
+"""Rows of pixels that are worth a thread: bands are so low that with more some would have none."""
+
+
+@wp.func_native("""
+    int* const at = (int*)line;
+    int column = begin;
+#if !defined(__CUDA_ARCH__)
+    typedef int Sixteen __attribute__((ext_vector_type(16), aligned(4)));
+    typedef int Four __attribute__((ext_vector_type(4), aligned(4)));
+    if (end - begin >= 16) {
+        for (; column < end - 16; column += 16) *(Sixteen*)(at + column) = triangle;
+        *(Sixteen*)(at + end - 16) = triangle;
+        return;
+    }
+    if (end - begin >= 4) {
+        for (; column < end - 4; column += 4) *(Four*)(at + column) = triangle;
+        *(Four*)(at + end - 4) = triangle;
+        return;
+    }
+#endif
+    for (; column < end; ++column) at[column] = triangle;
+""")
+def fill_run(line: wp.uint64, begin: int, end: int, triangle: int):
+    """Fill a part of a row: whole registers, the last of which overlaps the one before."""
+    ...
+
+
+@wp.kernel(enable_backward=False)
+def fill_triangles(
+    span: wp.array(dtype=wp.vec2i),
+    # In:
+    vertices: wp.array(dtype=wp.vec2d),
+    triangles: wp.array(dtype=wp.vec3i),
+    count: wp.array(dtype=int),
+    scale: wp.vec2d,
+    first_row: int,
+    samples: int,
+    # Out:
+    triangle_out: wp.array2d(dtype=int),
+):
+    """Fill some rows of one triangle, between its long edge and the two short ones."""
+    triangle = wp.tid()
+    if triangle >= count[0]:
+        return
+    width = triangle_out.shape[1]
+    begin = span[0][0] * samples
+    height = (span[0][1] - span[0][0]) * samples
+    corners = triangles[triangle]
+    above = wp.vec2i(0, (first_row + begin) * _UNIT)
+    top = to_fixed(wp.cw_mul(vertices[corners[0]], scale)) - above
+    middle = to_fixed(wp.cw_mul(vertices[corners[1]], scale)) - above
+    bottom = to_fixed(wp.cw_mul(vertices[corners[2]], scale)) - above
+    if wp.max(wp.max(top[1], middle[1]), bottom[1]) < 0:
+        return
+    if wp.min(wp.min(top[1], middle[1]), bottom[1]) > height * _UNIT:
+        return
+    if middle[1] < top[1]:
+        swap = top
+        top = middle
+        middle = swap
+    if bottom[1] < top[1]:
+        swap = top
+        top = bottom
+        bottom = swap
+    if bottom[1] < middle[1]:
+        swap = middle
+        middle = bottom
+        bottom = swap
+    long = walk_edge(top, bottom, height)
+    short = walk_edge(top, middle, height)
+    row = long.row_begin
+    pitch = wp.uint64(width) * wp.uint64(4)
+    line = triangle_out.ptr + wp.uint64(begin + row) * pitch
+    while row < long.row_end:
+        if row >= short.row_end:
+            short = walk_edge(middle, bottom, height)
+        long_column = column_of(long.position)
+        short_column = column_of(short.position)
+        column = wp.max(wp.min(long_column, short_column), 0)
+        fill_run(line, column, wp.min(wp.max(long_column, short_column), width), triangle)
+        long.position += long.step
+        short.position += short.step
+        line += pitch
+        row += 1
+
+
+def record_gbuffer(
+    device: Device,
+    *,
+    vertices: wp.array,
+    triangles: wp.array,
+    count: wp.array,
+    scale: tuple[float, float],
+    first_row: int,
+    samples: int,
+    triangle_out: wp.array,
+) -> Phase:
+    """Prepare the launch that writes every sample's triangle; its elements are rows of pixels.
+
+    Every part of it looks at all triangles and fills rows of its own, so that whoever shades a
+    row finds it in the cache, and nobody waits for another.
+
+    Args:
+        device: Where to run.
+        vertices: Positions [px of the picture], [V] vec2d.
+        triangles: Corners, [T] vec3i.
+        count: Number of triangles, [1] int32.
+        scale: Samples per pixel of the picture, across and down.
+        first_row: The sample row of the output with which `triangle_out` begins.
+        samples: Sample rows per row of pixels.
+        triangle_out: Triangle of each sample of a band of the output, [rows, columns] int32;
+            across it is the output's width times the samples per output pixel.
+    """
+    inputs = [vertices, triangles, count, wp.vec2d(*scale), first_row, samples]
+    return device.record(
+        fill_triangles, inputs, [triangle_out], smallest_part=LEAST_ROWS, flows_on=True
+    )

@@ -1,0 +1,1 @@
+"""Kernels of the energy: moments, fits, gradients and gains of topology."""

@@ -1,0 +1,250 @@
+"""Where triangles show colours that are darker than all pixels around, or brighter than them all.
+
+Most such pixels lie deep on one side of a strong border that their triangle runs over.
+"""
+
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+import numpy as np
+import warp as wp
+
+from warp_kernels.device.device import Phase
+from warp_kernels.device.exact import EXACT
+from warp_kernels.energy.color_model import CHANNELS, ColorModel
+from warp_kernels.energy.triangle_walk import columns_of, step_down, walk_triangle
+from warp_kernels.energy.workspace import Workspace
+
+wp.set_module_options({"enable_backward": False, "fuse_fp": False})
+
+NEAR = 4
+"""Pixels around one count so far away, along rows and along columns [px]."""
+LEEWAY = 39.0
+"""Most that a colour may leave the range of the pixels around one [code values]."""
+
+
+@wp.struct
+class Range:
+    """The least and the greatest value of every channel [code values]."""
+
+    low: wp.vec3d
+    high: wp.vec3d
+
+
+@wp.func
+def read(pixels: wp.array2d(dtype=wp.vec3ub), row: int, column: int) -> wp.vec3d:
+    """A pixel's code values."""
+    pixel = pixels[row, column]
+    return wp.vec3d(wp.float64(pixel[0]), wp.float64(pixel[1]), wp.float64(pixel[2]))
+
+
+@wp.func
+def read_limit(limits: wp.array3d(dtype=wp.uint8), triangle: int, side: int) -> wp.vec3d:
+    """The lowest or the highest colour that a triangle shows."""
+    return wp.vec3d(
+        wp.float64(limits[triangle, side, 0]),
+        wp.float64(limits[triangle, side, 1]),
+        wp.float64(limits[triangle, side, 2]),
+    )
+
+
+@wp.func
+def farthest(a: wp.vec3d, b: wp.vec3d) -> wp.float64:
+    """How far the most different channels lie apart."""
+    away = wp.abs(a - b)
+    return wp.max(away[0], wp.max(away[1], away[2]))
+
+
+@wp.func
+def range_around(
+    pixels: wp.array2d(dtype=wp.vec3ub), row: int, column: int, shown: wp.vec3d
+) -> Range:
+    """What a pixel may show by those around it; once that holds what is shown it is not widened."""
+    slack = wp.float64(wp.static(LEEWAY))
+    leeway = wp.vec3d(slack, slack, slack)
+    result = Range()
+    result.low = read(pixels, row, column) - leeway
+    result.high = read(pixels, row, column) + leeway
+    # nearly always a few of them are enough
+    step = int(NEAR)
+    held = bool(False)
+    while step > 0 and not held:
+        for down in range(-NEAR, NEAR + 1, step):
+            y = wp.clamp(row + down, 0, pixels.shape[0] - 1)
+            for right in range(-NEAR, NEAR + 1, step):
+                value = read(pixels, y, wp.clamp(column + right, 0, pixels.shape[1] - 1))
+                result.low = wp.min(result.low, value - leeway)
+                result.high = wp.max(result.high, value + leeway)
+        inside = wp.min(wp.max(shown, result.low), result.high)
+        held = farthest(inside, shown) == wp.float64(0.0)
+        step = step // NEAR
+    return result
+
+
+@cache
+def _color_at(model: ColorModel) -> Any:
+    """A wp.func: the colour of a triangle in the middle of a pixel, within no limits."""
+    exponents = model.exponents
+
+    @wp.func
+    def color_at(
+        coefficients: wp.array3d(dtype=wp.float64), triangle: int, row: int, column: int
+    ) -> wp.vec3d:
+        """Sum up the terms."""
+        x = wp.float64(column) + wp.float64(0.5)
+        y = wp.float64(row) + wp.float64(0.5)
+        color = wp.vec3d()
+        for term in range(wp.static(len(exponents))):
+            factor = wp.float64(1.0)
+            for _a in range(wp.static(exponents[term][0])):
+                factor *= x
+            for _b in range(wp.static(exponents[term][1])):
+                factor *= y
+            for channel in range(3):
+                color[channel] += factor * coefficients[triangle, channel, term]
+        return color
+
+    return color_at
+
+
+@cache
+def _kernel(model: ColorModel) -> Any:
+    color_at = _color_at(model)
+
+    @wp.kernel(module="unique", module_options=EXACT)
+    def look_nearby(
+        span: wp.array(dtype=wp.vec2i),
+        # In:
+        vertices: wp.array(dtype=wp.vec2d),
+        triangles: wp.array(dtype=wp.vec3i),
+        pixels: wp.array2d(dtype=wp.vec3ub),
+        coefficients: wp.array3d(dtype=wp.float64),
+        energies: wp.array(dtype=wp.float64),
+        limits: wp.array3d(dtype=wp.uint8),
+        # Out:
+        counts_out: wp.array(dtype=int),
+        changes_out: wp.array(dtype=wp.vec3d),
+        places_out: wp.array2d(dtype=wp.vec2i),
+        energies_out: wp.array(dtype=wp.float64),
+    ):
+        """Walk over one triangle's pixels, and keep what is worst in every channel."""
+        triangle = span[0][0] + wp.tid()
+        if triangle >= span[0][1]:
+            return
+        counts_out[triangle] = 0
+        if energies[triangle] <= wp.float64(wp.static(0.5 * LEEWAY * LEEWAY)):
+            return  # not one pixel can be that far off
+        low = read_limit(limits, triangle, 0)
+        high = read_limit(limits, triangle, 1)
+        corners = triangles[triangle]
+        height = pixels.shape[0]
+        walk = walk_triangle(
+            vertices[corners[0]], vertices[corners[1]], vertices[corners[2]], height
+        )
+        count = int(0)
+        worst = wp.vec3d()
+        changes = wp.vec3d()
+        squares = wp.float64(0.0)
+        is_told = wp.isinf(energies[triangle])
+        color = color_at(coefficients, triangle, 0, 0)
+        for channel in range(3):
+            places_out[triangle, channel] = wp.vec2i(0, 0)
+        while walk.row + 1 < walk.end:
+            walk = step_down(walk, height)
+            columns = columns_of(walk, pixels.shape[1])
+            for column in range(columns[0], columns[1]):
+                if wp.static(model.degree > 0):
+                    color = color_at(coefficients, triangle, walk.row, column)
+                value = read(pixels, walk.row, column)
+                if is_told:
+                    squares += wp.dot(color - value, color - value)
+                if farthest(color, value) > wp.float64(wp.static(LEEWAY)):
+                    shown = wp.min(wp.max(color, low), high)
+                    near = range_around(pixels, walk.row, column, shown)
+                    asked = wp.min(wp.max(shown, near.low), near.high)
+                    if farthest(shown, asked) > wp.float64(0.0):
+                        count += 1
+                    for channel in range(3):
+                        if wp.abs(asked[channel] - shown[channel]) > worst[channel]:
+                            worst[channel] = wp.abs(asked[channel] - shown[channel])
+                            changes[channel] = asked[channel] - color[channel]
+                            places_out[triangle, channel] = wp.vec2i(column, walk.row)
+        counts_out[triangle] = count
+        changes_out[triangle] = changes
+        energies_out[triangle] = wp.float64(0.5) * squares
+
+    return look_nearby
+
+
+@dataclass(frozen=True, eq=False)
+class Departures:
+    """Pixels of each triangle that leave the range of those around by more than `LEEWAY`."""
+
+    counts: np.ndarray
+    """How many there are, [T] int; where there is none the rest means nothing."""
+    changes: np.ndarray
+    """What must be added to the colour at the worst of them, channel by channel [code values],
+    [T, 3]; 0 where no pixel leaves it."""
+    places: np.ndarray
+    """The column and the row of each of these pixels [px], [T, 3, 2] int."""
+    energies: np.ndarray
+    """E(T) of the colours without their limits [code value^2 px], [T]; 0 if not asked for."""
+
+
+class Nearby:
+    """Looks for such pixels, over the picture in a workspace.
+
+    Args:
+        workspace: Holds the picture and the mesh.
+    """
+
+    def __init__(self, workspace: Workspace) -> None:
+        self._workspace = workspace
+        self._generation = -1
+        self._recorded: dict[Any, Phase] = {}
+
+    def measure(
+        self, coefficients: np.ndarray, energies: np.ndarray, limits: np.ndarray
+    ) -> Departures:
+        """Look at the mesh as it stands.
+
+        Args:
+            coefficients: As in a snapshot, [T, 3, K].
+            energies: No less than those of what is shown [code value^2 px]; 0 for triangles that
+                shall not be looked at, infinite for those whose energies shall be told, [T].
+            limits: Least and greatest values that are shown [code values], [T, 2, 3] uint8.
+        """
+        self._allocate()
+        workspace, device = self._workspace, self._workspace.device
+        for array, values in zip(self._given, (coefficients, energies, limits), strict=True):
+            device.write(array, values)
+        place = workspace.standing.ptr
+        if place not in self._recorded:
+            inputs = [workspace.standing, workspace.triangles, workspace.pixels, *self._given]
+            self._recorded[place] = device.record(_kernel(workspace.model), inputs, self._found)
+        phase = self._recorded[place]
+        phase.resize(len(energies))
+        device.run([phase])
+        return Departures(*(device.read(array, len(energies)) for array in self._found))
+
+    def _allocate(self) -> None:
+        """Take memory for as many triangles as the workspace has room for."""
+        workspace = self._workspace
+        if self._generation == workspace.generation:
+            return
+        T, empty = workspace.capacity[1], workspace.device.empty
+        terms = workspace.model.term_count
+        self._given = (
+            empty((T, CHANNELS, terms), wp.float64),
+            empty(T, wp.float64),
+            empty((T, 2, CHANNELS), wp.uint8),
+        )
+        self._found = (
+            empty(T, int),
+            empty(T, wp.vec3d),
+            empty((T, CHANNELS), wp.vec2i),
+            empty(T, wp.float64),
+        )
+        self._generation = workspace.generation
+        self._recorded.clear()

@@ -1,0 +1,95 @@
+"""Device arrays and launches that measure changes of topology over a workspace's mesh."""
+
+import numpy as np
+import warp as wp
+
+from warp_kernels.device.device import Phase
+from warp_kernels.energy.topology_gains import record_changes
+from warp_kernels.energy.topology_inputs import ground_type
+from warp_kernels.energy.workspace import Workspace
+
+
+class Survey:
+    """Measures all flips, collapses or splits of the mesh in a workspace at once.
+
+    `Workspace.fit` must have run since the vertices moved: gains are differences to its energies.
+
+    Args:
+        workspace: Holds the picture and the mesh.
+    """
+
+    def __init__(self, workspace: Workspace) -> None:
+        self._workspace = workspace
+        self._limits = workspace.device.empty(2, wp.float64)
+        self.limit(0.0, np.inf)
+        self._capacity = 0
+        self._phases: dict[tuple[str, int, int], Phase] = {}
+
+    def limit(self, least_height: float, largest_area: float) -> None:
+        """Bar changes that would make a triangle thinner [px] or larger [px^2] than this."""
+        self._workspace.device.write(self._limits, np.array([least_height, largest_area]))
+
+    def load_topology(self, twins: np.ndarray, corners: np.ndarray) -> None:
+        """Take in what the workspace does not know of its mesh.
+
+        Args:
+            twins: The half-edge that runs the other way, -1 on the border, [3 T].
+            corners: Vertex number of every half-edge's origin, [3 T].
+        """
+        device = self._workspace.device
+        if len(twins) > self._capacity:
+            self._capacity = 3 * self._workspace.capacity[1]
+            self._phases.clear()  # they were recorded over the arrays that go now
+            self._twins = device.empty(self._capacity, int)
+            self._corners = device.empty(self._capacity, int)
+            self._half_edges = device.empty(self._capacity, int)
+            self._changes = device.empty(self._capacity, wp.float64)
+            self._points = device.empty(self._capacity, wp.vec2d)
+        device.write(self._twins, twins)
+        device.write(self._corners, corners)
+
+    def flip_gains(self, half_edges: np.ndarray) -> np.ndarray:
+        """Energy that each flip saves [code value^2 px], [N]; hugely negative if impossible."""
+        return self._measure("flip", half_edges)
+
+    def collapse_costs(self, half_edges: np.ndarray) -> np.ndarray:
+        """Energy that each collapse of an origin adds [code value^2 px], [N]; huge if barred."""
+        return self._measure("collapse", half_edges)
+
+    def split_gains(self, half_edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The best split of each edge.
+
+        Returns:
+            Energy that it saves [code value^2 px], [N], and its place [px], [N, 2].
+        """
+        gains = self._measure("split", half_edges)
+        return gains, self._workspace.device.read(self._points, len(half_edges))
+
+    def _measure(self, change: str, half_edges: np.ndarray) -> np.ndarray:
+        device = self._workspace.device
+        key = (change, self._workspace.generation, self._workspace.standing.ptr)
+        if key not in self._phases:
+            self._phases[key] = self._record(change)
+        phase = self._phases[key]
+        phase.resize(len(half_edges))
+        device.write(self._half_edges, half_edges)
+        device.run([phase])
+        return device.read(self._changes, len(half_edges))
+
+    def _record(self, change: str) -> Phase:
+        workspace = self._workspace
+        ground = ground_type(workspace.layout)()
+        ground.half_edges = self._half_edges
+        ground.twins = self._twins
+        ground.corners = self._corners
+        ground.vertices = workspace.standing
+        ground.energies = workspace.fit_energies
+        ground.sides = workspace.sides
+        ground.color_sums = workspace.fit_color_sums
+        ground.area_sums = workspace.fit_area_sums
+        ground.table = workspace.table
+        ground.gauge = workspace.gauge
+        ground.limits = self._limits
+        ground.width, ground.height = workspace.size
+        outputs = [self._changes, self._points] if change == "split" else [self._changes]
+        return record_changes(workspace.device, workspace.layout, change, ground, outputs)

@@ -1,0 +1,1 @@
+"""Sums over pixels: what is summed, prefix tables, walks along edges, fragments."""
