@@ -10,7 +10,7 @@ from test_encode import ROOT
 SCRIPT = """
 import sys
 from pathlib import Path
-from warp_kernels.device.device import kernel_cache
+from warp_kernels.device import kernel_cache
 from warp_kernels.errors import TrimotionError
 if sys.argv[1:]:
     kernel_cache.tempfile.tempdir = sys.argv[1]

@@ -268,7 +268,8 @@ def test_weights_go_where_vertices_move(workspaces, tmp_path: Path) -> None:
     assert animate(job, Progress()).frames == 3
     even, fitting, weighted = workspaces
     assert [w.weighted for w in workspaces] == [False, False, True]
-    assert even.loaded == fitting.loaded == [None, None, None]
+    assert even.loaded == [None, None, None]
+    assert set(fitting.loaded) == {None}
     assert [int(weights[0, 0]) for weights in weighted.loaded] == [11, 31, 51]
 
 
