@@ -18,6 +18,7 @@ from pipeline.job import Job
 from pipeline.loop.animate import animate
 from pipeline.progress import Progress
 from pipeline.track import TrackReader, TrackWriter
+from pipeline.track.agreement import differing_flags
 from pipeline.track.blobs import pack, unpack
 from pipeline.track.plain_values import from_plain, to_plain
 from stages.flows import FLOWS
@@ -294,7 +295,7 @@ def test_spoilt_track_is_one_line(how: str, words: str, copy: Path, tmp_path: Pa
     ("options", "code", "words"),
     [
         (("--triangles", "41"), 2, "--triangles 41 instead of 40"),
-        (("--flow", "none"), 2, "--flow noflow instead of dis"),
+        (("--flow", "none"), 2, "--flow none instead of dis"),
         (("--seed", "3", "--independent"), 2, "--seed 3 instead of 0"),
         (("--cuts", "none"), 2, "--cuts none instead of auto"),
         (("--frames", "0-x2"), 2, "every 2. frame"),
@@ -310,6 +311,21 @@ def test_other_options_are_no_resumption(
     found, line = failure(capsys, "solve", clip, "-o", copy, *flags)
     assert (found, copy.read_bytes()) == (code, before)
     assert words in line
+
+
+def test_track_of_a_program_that_knew_less_goes_on(copy: Path) -> None:
+    """What it could not say of focus and of reading is what it did: nothing special."""
+    with TrackReader(copy) as track:
+        wanted = {**track.header.options, "focus": [{"class": "NoFocus"}]}
+    known = {name: value for name, value in wanted.items() if name not in ("focus", "read")}
+    with closing(sqlite3.connect(copy)) as connection:
+        statement = "UPDATE header SET value = ? WHERE key = 'options'"
+        connection.execute(statement, (json.dumps(known),))
+        connection.commit()
+    with TrackReader(copy) as track:
+        assert not differing_flags(wanted, track.header.options)
+        found = differing_flags({**wanted, "focus": []}, track.header.options)
+        assert found == ["--focus none instead of auto"]
 
 
 def test_other_versions_are_told(clip: Path, copy: Path) -> None:

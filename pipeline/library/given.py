@@ -37,7 +37,9 @@ def given_values(function: str, keywords: Mapping[str, Any]) -> dict[str, object
         elif name not in options:
             raise OptionError(_unknown(function, name))
         elif value is not None:
-            values[options[name].dest] = _read(options[name], name, _plain(value))
+            option = options[name]
+            plain = _plain(value, is_size=option.dest == "output_size")
+            values[option.dest] = _read(option, name, plain)
     return with_preset(values, preset)
 
 
@@ -75,13 +77,13 @@ def _preset(value: object) -> dict[str, object]:
     return {} if value is None else read_preset(file_name("preset", value))
 
 
-def _plain(value: Any) -> Any:
+def _plain(value: Any, *, is_size: bool = False) -> Any:
     """A value as a file of options could hold it."""
     if isinstance(value, os.PathLike):
         return os.fspath(value)
     if isinstance(value, list | tuple):
         entries = [_plain(entry) for entry in value]
-        if isinstance(value, tuple) and len(entries) == 2 and all(map(_is_whole, entries)):
+        if is_size and len(entries) == 2 and all(map(_is_whole, entries)):
             return f"{entries[0]}x{entries[1]}"
         return entries
     if type(value).__module__ == "numpy" and getattr(value, "ndim", None) == 0:

@@ -26,7 +26,12 @@ def frame_of(pixels: Any, index: int) -> Frame:
     Raises:
         OptionError: If it is another array.
     """
-    array = np.asarray(pixels)
+    try:
+        array = np.asarray(pixels)
+    except ValueError as error:  # rows of different lengths
+        raise OptionError(
+            f"pixels: NumPy makes no array of them ({error}); give [H, W, 3] or [H, W] uint8"
+        ) from error
     _check_kind(array)
     if array.ndim == 2:
         array = np.repeat(array[..., None], 3, axis=2)

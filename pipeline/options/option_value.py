@@ -1,5 +1,6 @@
 """Values of options from a file or a program, read as the command line reads its texts."""
 
+import reprlib
 from argparse import ArgumentTypeError
 from fractions import Fraction
 
@@ -32,7 +33,9 @@ def option_value(option: Option, value: object, what: str, sign: str = " = ") ->
 def _single(option: Option, value: object, what: str, sign: str) -> object:
     """One value, read by the same function as on the command line."""
     if isinstance(value, bool) or not isinstance(value, str | int | float | Fraction):
-        raise OptionError(f"{what}{sign}{value!r}: write a number or a text in quotes")
+        shown = " ".join(reprlib.repr(value).split())
+        form = f", as {option.metavar}" if option.metavar else ""
+        raise OptionError(f"{what}{sign}{shown}: write a number or a text in quotes{form}")
     try:
         result = option.read(str(value))
     except ArgumentTypeError as error:

@@ -15,15 +15,15 @@ from pipeline.track.identity import SourceIdentity, identity_of
 from pipeline.track.plain_values import UnknownNameError, from_plain, to_plain
 from pipeline.version import library_versions, program_version
 from stages.focus.none import NoFocus
-from stages.media import FrameRange, MediaInfo
+from stages.media import FrameRange, MediaInfo, ReadOptions
 from warp_kernels.energy.color_model import COLOR_MODELS, ColorModel
 from warp_kernels.errors import OptionError, TrackError
 from warp_kernels.raster import MAX_SIDE
 
 KEYS = frozenset({"program", "libraries", "options", "source", "info", "model", "finished"})
 """What a header holds."""
-NO_FOCUS = {"focus": [to_plain(NoFocus())]}
-"""What tracks that knew no focus were made with."""
+EARLIER = {"focus": [to_plain(NoFocus())], "read": to_plain(ReadOptions())}
+"""What tracks were made with that did not know these options."""
 MOST_VALUES = 250_000
 """Values of a field, more than any list of cuts has: a text of a few megabytes could become
 gigabytes of small lists."""
@@ -143,7 +143,7 @@ def read_header(path: Path, connection: sqlite3.Connection) -> Header:
         header = Header(
             program=_text(rows["program"]),
             libraries={_text(k): _text(v) for k, v in dict(rows["libraries"]).items()},
-            options={**NO_FOCUS, **dict(rows["options"])},
+            options={**EARLIER, **dict(rows["options"])},
             source=from_plain(SourceIdentity, rows["source"]),
             info=from_plain(MediaInfo, rows["info"]),
             model=COLOR_MODELS[_text(rows["model"])],
