@@ -297,14 +297,10 @@ class Triangulator:
         self._solved = replace(snapshot, energies=self._even.appraiser.energies(snapshot.mesh))
 
     def _unrest(self, seed: Carried, earlier: Snapshot | None) -> Unrest | None:
-        """Where the picture boils, if anywhere.
-
-        Told by the colours that are optimised: those that are drawn must not decide about a mesh.
-        """
-        solved = self._solved
-        if earlier is None or solved is None or solved.mesh is not earlier.mesh:
-            return None
-        return Unrest.between(solved, seed, self._even.appraiser.energies(seed.mesh))
+        """Where the picture boils, told by the colours that are optimised, not those drawn."""
+        if earlier is not None and self._solved is not None and self._solved.mesh is earlier.mesh:
+            return Unrest.between(self._solved, seed, self._even.appraiser.energies(seed.mesh))
+        return None
 
     def _followed_count(self, mesh: Mesh) -> int:
         """How many triangles a later frame shall have; a quality lets their number drift."""
@@ -349,7 +345,11 @@ class Triangulator:
         count = self._approximator.growth(goal).count(0.0, goal.count)
         mesh = layout.build(frame.pixels, max(2, count), rng)
         mesh = self._approximator.approximate(mesh, goal)
-        return Trial(mesh, self._rmse(mesh))
+        if self.options.refine.quality is None or self._fitting is not self._even.workspace:
+            return Trial(mesh, self._rmse(mesh))
+        return Trial(
+            mesh, self._snapshot(frame, mesh).rmse
+        )  # colours that were moved cost a little
 
     def _rmse(self, mesh: Mesh) -> float:
         """Root mean square error per channel, of all pixels alike [code values of the space]."""
@@ -396,5 +396,5 @@ def _against(options: TriangulateOptions, scale: float) -> TriangulateOptions:
         options: As the user gave them; `error` is in code values of the space already.
         scale: Energy of an error over its energy in RGB, typically [1].
     """
-    pull = options.optimize
-    return replace(options, optimize=replace(pull, regularity=pull.regularity * scale))
+    regularity = options.optimize.regularity * scale
+    return replace(options, optimize=replace(options.optimize, regularity=regularity))
