@@ -234,7 +234,7 @@ def test_threads_end_with_their_device(device: str) -> None:
         phase.resize(700)
         runner.run([phase], 2)
     runner.close()  # again
-    assert parts_alive() == before
+    assert parts_alive() <= before
     assert (runner.read(visits, 700) == 2).all()
     with pytest.raises(RuntimeError, match="was closed"):
         runner.run([phase])
