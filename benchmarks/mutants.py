@@ -44,15 +44,15 @@ MUTANTS = (
     Mutant(
         "same picture is solved again",
         "pipeline/loop/animate.py",
-        "step.passage.is_still and job.weights is None",
+        "step.repeats and not job.maps",
         "False",
         "tests/test_track.py -k same_picture",
     ),
     Mutant(
         "same picture keeps its mesh whatever its weights",
         "pipeline/loop/animate.py",
-        "step.passage.is_still and job.weights is None",
-        "step.passage.is_still",
+        "step.repeats and not job.maps",
+        "step.repeats",
         "tests/test_track.py -k same_picture",
     ),
     Mutant(
