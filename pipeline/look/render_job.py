@@ -44,9 +44,12 @@ def render_job(look: Job, track: TrackReader, source: Path | None) -> RenderJob:
     job = replace(job, blend=look.blend, smooth=look.smooth)
     job = replace(job, device=look.device, threads=look.threads)
     job = replace(job, frame_range=_range(look.frame_range, track))
+    last = track.rows[-1].frame
     found, problem = _find(source, track, _needs(job, track))
     info = header.info
     notes = []
+    if look.frame_range.last is not None and look.frame_range.last > last:
+        notes.append(f"frames {look.frame_range}: the track ends with frame {last}")
     if found is None:
         if info.audio_codec is not None and job.encode.audio:
             notes.append(f"{problem}: the sound is left out; --source says where it is now")
@@ -55,7 +58,6 @@ def render_job(look: Job, track: TrackReader, source: Path | None) -> RenderJob:
         job, info = replace(job, source=found), replace(info, path=found)
     warnings: tuple[str, ...] = ()
     if not header.finished:
-        last = track.rows[-1].frame
         warnings = (f"{track.path} is unfinished: its frames end with {last}",)
     return RenderJob(job, info, tuple(notes), warnings)
 

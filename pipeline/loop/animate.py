@@ -19,7 +19,6 @@ from pipeline.look.region_members import followed_shares
 from pipeline.look.rows_around import rows_around
 from pipeline.look.source_pictures import source_pictures
 from pipeline.loop.attention import Attention
-from pipeline.loop.expected_frames import expected_frames
 from pipeline.loop.motion import Step, check_cuts, open_around, steps
 from pipeline.loop.shots import with_shots
 from pipeline.loop.threads import Behind, ahead
@@ -29,6 +28,7 @@ from pipeline.track.resume import Past, Reached, open_track, past_of
 from stages.frame import Frame
 from stages.masks.weight_maps import WeightMap
 from stages.media import Decoder, FrameRange, MediaInfo, open_decoder
+from stages.media.expected_frames import expected_frames
 from stages.motion.advect import advect
 from stages.snapshot import Snapshot
 from stages.triangulate import Triangulator

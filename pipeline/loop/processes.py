@@ -86,7 +86,7 @@ def animate_in_parts(job: Job, progress: Progress) -> Animated:
         result,
         seconds=perf_counter() - begun,
         warnings=(*solved.warnings, *result.warnings),
-        notes=(*solved.notes, *result.notes),
+        notes=tuple(dict.fromkeys([*solved.notes, *result.notes])),
     )
 
 
@@ -106,7 +106,8 @@ def solve_in_parts(job: Job, progress: Progress) -> Animated:
     alone = replace(job, jobs=1)
     if job.jobs == 1 or (job.resume and job.track.exists()):
         return solve(alone, progress)  # what is resumed goes on inside a shot
-    ranges = plan(job).ranges
+    planned = plan(job)
+    ranges = planned.ranges
     if len(ranges) == 1:
         return solve(alone, progress)
     folder = _made_folder(job)
@@ -118,7 +119,7 @@ def solve_in_parts(job: Job, progress: Progress) -> Animated:
     with TrackReader(job.track) as reader:
         mean = float(np.mean([row.rmse for row in reader.rows]))
     shutil.rmtree(folder, ignore_errors=True)
-    notes = list(crew.notes)
+    notes = list(dict.fromkeys([*planned.notes, *crew.notes]))
     if len(ranges) < job.jobs:
         notes.append(f"{len(ranges)} shots: so many processes, not {job.jobs}")
     return Animated(crew.done, perf_counter() - begun, mean, tuple(crew.warnings), tuple(notes))
