@@ -43,16 +43,16 @@ ROWS = "pipeline/track/reader.py"
 MUTANTS = (
     Mutant(
         "same picture is solved again",
-        "pipeline/loop/animate.py",
-        "step.repeats and not job.maps",
-        "False",
+        "pipeline/loop/motion.py",
+        "is_same = passage.is_still and",
+        "is_same = False and",
         "tests/test_track.py -k same_picture",
     ),
     Mutant(
         "same picture keeps its mesh whatever its weights",
-        "pipeline/loop/animate.py",
-        "step.repeats and not job.maps",
-        "step.repeats",
+        "pipeline/loop/motion.py",
+        "passage.is_still and not job.maps and",
+        "passage.is_still and",
         "tests/test_track.py -k same_picture",
     ),
     Mutant(
