@@ -109,7 +109,7 @@ MUTANTS = (
         "stages/validate.py",
         "<= READ_TOLERANCE * domain",
         "<= domain",
-        BAD,
+        f"{BAD} -k another_picture",
     ),
     Mutant("colours of no number", "stages/validate.py", "colors.max() < LARGEST", "True", BAD),
     Mutant("counts below zero", "stages/validate.py", "snapshot.counts.min() < 0", "False", BAD),
