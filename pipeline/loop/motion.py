@@ -15,6 +15,7 @@ import numpy as np
 from pipeline.job import Job
 from pipeline.loop.attention import reach_of
 from pipeline.loop.shots import AHEAD, ShotFrame
+from pipeline.track import refuse_track
 from pipeline.track.cuts import read_cuts
 from pipeline.track.resume import Reached
 from stages.flows.passage import Passage
@@ -55,6 +56,7 @@ def open_around(job: Job, reached: Reached | None) -> Decoder:
     Raises:
         MediaError: If the source cannot be read.
     """
+    refuse_track(job.source)
     wanted = job.frame_range
     before, after = reach_of(job.foci)
     if reached is not None and reached.frame >= wanted.first - before * wanted.step:

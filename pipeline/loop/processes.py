@@ -22,7 +22,7 @@ from pipeline.look.render_job import render_job
 from pipeline.loop.animate import Animated, render, solve
 from pipeline.loop.plan import plan
 from pipeline.progress import Progress
-from pipeline.track import TrackReader, join
+from pipeline.track import TrackReader, join, refuse_track
 from pipeline.track.resume import check_track_place
 from pipeline.track.schema import ENDING
 from stages.media import FrameRange, probe
@@ -65,6 +65,7 @@ def animate_in_parts(job: Job, progress: Progress) -> Animated:
     """
     begun = perf_counter()
     both = _Halves(progress)
+    refuse_track(job.source)
     info = probe(job.source, read=job.read)
     check_followed(job, info)
     check_drawing(job, info)
