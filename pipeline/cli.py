@@ -44,8 +44,12 @@ def main(argv: Sequence[str] | None = None) -> int:
     _print_anything()
     if argv is None:  # else it is called by a program that takes care of itself
         watch_for_crashes()
+    parser = build_parser()
+    if not (sys.argv[1:] if argv is None else argv):
+        parser.print_help(sys.stderr)  # a script whose variable was empty must notice
+        return 2
     try:
-        arguments = build_parser().parse_args(argv)
+        arguments = parser.parse_args(argv)
     except SystemExit as request:
         return request.code if isinstance(request.code, int) else 2
     try:
@@ -193,12 +197,32 @@ def run_styles(arguments: argparse.Namespace) -> None:
     if arguments.sheet is None:
         from pipeline.commands.style_list import list_styles
 
-        print(list_styles(as_json=arguments.json))
+        print(list_styles(arguments.picture, as_json=arguments.json))
         return
     from pipeline.commands.style_sheet import draw_sheet
 
     triangles, overwrite = arguments.triangles, arguments.overwrite
     draw_sheet(arguments.picture, arguments.sheet, triangles=triangles, overwrite=overwrite)
+
+
+def run_help(arguments: argparse.Namespace) -> None:
+    """Print the help of the program or of a command.
+
+    Args:
+        arguments: What the user gave.
+    """
+    parser = build_parser()
+    known = parser.commands()
+    if arguments.topic is None:
+        parser.print_help()
+    elif arguments.topic in known:
+        known[arguments.topic].print_help()
+    else:
+        from pipeline.options.nearest import nearest
+        from warp_kernels.errors import OptionError
+
+        similar = nearest(arguments.topic, known)
+        raise OptionError(f"help {arguments.topic}: no such command; {similar}")
 
 
 COMMANDS: dict[str, Callable[[argparse.Namespace], None]] = {
@@ -210,6 +234,7 @@ COMMANDS: dict[str, Callable[[argparse.Namespace], None]] = {
     "info": run_info,
     "measure": run_measure,
     "styles": run_styles,
+    "help": run_help,
 }
 """What each subcommand runs."""
 

@@ -161,7 +161,6 @@ def test_impossible_option_is_one_line(
 @pytest.mark.parametrize(
     "arguments",
     [
-        "",
         "dance",
         "animate",
         "animate in.mp4",

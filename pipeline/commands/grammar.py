@@ -2,30 +2,24 @@
 
 import argparse
 import difflib
-from collections.abc import Sequence
+import re
+from collections.abc import Iterable, Sequence
+from pathlib import Path
 from typing import Any, NoReturn
 
+from pipeline.commands.examples import ABOUT_ALL, EXAMPLES, shown
 from pipeline.options.command_line import (
     COMMAND_OPTIONS,
     add_job_options,
     add_range_options,
+    commands_with,
     registry_help,
 )
 from pipeline.options.flags import text_value, whole_number
+from pipeline.options.nearest import nearest
 from pipeline.progress import CHOICES
 
 ABOUT = "Turn videos into coherent triangulated animations."
-
-EXAMPLES = """\
-examples:
-  trimotion animate clip.mp4 -o triangles.mp4
-  trimotion animate clip.mp4 -o triangles.mp4 --triangles 3000 --style flat --style edges
-  trimotion animate clip.mp4 -o part.webm --frames 100-199 --color linear --scale 0.5
-  trimotion animate photo.jpg -o poster.png --triangles 700 --scale 2
-  trimotion animate clip.mp4 -o quick.mp4 --preset preview
-  trimotion solve clip.mp4 -o clip.mtrk --jobs 4
-  trimotion render clip.mtrk -o lines.mp4 --style flat --style edges --scale 2
-"""
 
 COMMANDS_HELP = """\
 commands:
@@ -36,11 +30,20 @@ commands:
   join A.mtrk B.mtrk ... -o OUT.mtrk   put the tracks of ranges together
   info FILE                  what a file is: a source or a mesh track
   measure SOURCE OUTPUT      how close an output is to its source, and how coherent
-  styles                     all styles and their parameters; --sheet draws them
+  styles [NAME]              all styles and their parameters, or one; --sheet draws them
+  help [COMMAND]             this text, or the options of a command
 
-trimotion COMMAND --help tells the options of a command.
+trimotion COMMAND --help tells the options of a command, too.
 
 """
+
+WHERE_PARAMETERS = """\
+trimotion styles lists every style with its parameters, trimotion styles NAME those of one.
+
+"""
+
+
+_CHOICE = re.compile(r"argument COMMAND: invalid choice: '(.*)' \(choose from ")
 
 
 class OneLineParser(argparse.ArgumentParser):
@@ -48,15 +51,26 @@ class OneLineParser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         """Print a mistake and leave with exit code 2."""
+        found = _CHOICE.match(message)
+        if found:
+            message = _no_command(found[1], self.commands())
         line = " ".join(message.removeprefix("argument ").split())
         self.exit(2, f"trimotion: error: {line}; see {self.prog} --help\n")
 
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
         """Refuse unknown options here, where the similar ones are known."""
         found, unknown = super().parse_known_args(args, namespace)
-        if unknown and self.get_default("command"):
-            self.error(_unknown(unknown, list(self._option_string_actions)))
+        command = self.get_default("command")
+        if unknown and command:
+            self.error(_unknown(unknown, list(self._option_string_actions), command))
         return found, unknown
+
+    def commands(self) -> dict[str, argparse.ArgumentParser]:
+        """The parsers of its commands, by name."""
+        for action in self._actions:
+            if isinstance(action, argparse._SubParsersAction):
+                return dict(action.choices)
+        return {}
 
 
 class _Version(argparse.Action):
@@ -69,17 +83,18 @@ class _Version(argparse.Action):
         parser.exit()
 
 
-def build_parser() -> argparse.ArgumentParser:
+def build_parser() -> OneLineParser:
     """Make the parser; options of a job that were not given are absent from its result."""
     parser = OneLineParser(
         prog="trimotion",
         description=ABOUT,
         usage="trimotion COMMAND ... ",
-        epilog=COMMANDS_HELP + EXAMPLES,
+        epilog=COMMANDS_HELP + shown(ABOUT_ALL),
         formatter_class=argparse.RawDescriptionHelpFormatter,
         allow_abbrev=False,
     )
-    parser.add_argument("--version", action=_Version, nargs=0, help="print the version")
+    parser.add_argument("-V", "--version", action=_Version, nargs=0, help="print the version")
+    parser.add_argument("--debug", action="store_true", help="show where an error arose")
     commands = parser.add_subparsers(
         dest="command", metavar="COMMAND", required=True, help=argparse.SUPPRESS
     )
@@ -91,6 +106,7 @@ def build_parser() -> argparse.ArgumentParser:
     _add_info(commands)
     _add_measure(commands)
     _add_styles(commands)
+    _add_help(commands)
     return parser
 
 
@@ -100,7 +116,7 @@ def _add_animate(commands: Any) -> None:
         "animate",
         "Convert a video, a still or numbered stills (shot_####.png) into triangles.",
         "trimotion animate INPUT -o OUTPUT [options]",
-        registry_help() + "\n\n" + EXAMPLES,
+        registry_help() + "\n\n" + WHERE_PARAMETERS,
     )
     parser.add_argument("source", metavar="INPUT", type=text_value, help="what FFmpeg reads")
     _add_output(
@@ -116,7 +132,6 @@ def _add_solve(commands: Any) -> None:
         "solve",
         "Convert a source to a mesh track. A run that is killed goes on with --resume.",
         "trimotion solve INPUT -o JOB.mtrk [options]",
-        EXAMPLES,
     )
     parser.add_argument("source", metavar="INPUT", type=text_value, help="what FFmpeg reads")
     _add_output(parser, "JOB.mtrk", "the mesh track")
@@ -130,7 +145,7 @@ def _add_render(commands: Any) -> None:
         "render",
         "Draw a mesh track, or a part of it, in any style and size.",
         "trimotion render JOB.mtrk -o OUTPUT [options]",
-        EXAMPLES,
+        WHERE_PARAMETERS,
     )
     parser.add_argument("track", metavar="JOB.mtrk", type=text_value, help="a mesh track")
     _add_output(parser, "OUTPUT", "what animate writes")
@@ -147,7 +162,6 @@ def _add_plan(commands: Any) -> None:
         "plan",
         "Print ranges of whole shots, one a line: solved apart and joined they are the whole.",
         "trimotion plan INPUT [--parts N] [--json]",
-        "",
     )
     parser.add_argument("source", metavar="INPUT", type=text_value, help="what FFmpeg reads")
     parser.add_argument(
@@ -163,7 +177,6 @@ def _add_join(commands: Any) -> None:
         "join",
         "Put the tracks of ranges that follow each other together.",
         "trimotion join A.mtrk B.mtrk ... -o OUT.mtrk",
-        "",
     )
     parser.add_argument(
         "tracks", metavar="TRACK.mtrk", nargs="+", type=text_value, help="in any order"
@@ -174,7 +187,13 @@ def _add_join(commands: Any) -> None:
 
 def _add_output(parser: argparse.ArgumentParser, metavar: str, text: str) -> None:
     parser.add_argument(
-        "-o", dest="output", metavar=metavar, type=text_value, required=True, help=text
+        "-o",
+        "--output",
+        dest="output",
+        metavar=metavar,
+        type=text_value,
+        required=True,
+        help=text,
     )
 
 
@@ -207,7 +226,7 @@ def _add_telling(group: Any) -> None:
 
 
 def _add_info(commands: Any) -> None:
-    parser = _command(commands, "info", "Print what a file is.", "trimotion info FILE [--json]", "")
+    parser = _command(commands, "info", "Print what a file is.", "trimotion info FILE [--json]")
     parser.add_argument(
         "file", metavar="FILE", type=text_value, help="a mesh track or what FFmpeg reads"
     )
@@ -221,7 +240,6 @@ def _add_measure(commands: Any) -> None:
         "Compare an output with its source: rmse [code values], PSNR, R (Eq. 12), E_warp and tOF; "
         "with a track also what its meshes do.",
         "trimotion measure SOURCE OUTPUT [--track JOB.mtrk] [--json]",
-        "",
     )
     parser.add_argument("source", metavar="SOURCE", type=text_value, help="what was converted")
     parser.add_argument("output", metavar="OUTPUT", type=text_value, help="what came out")
@@ -240,16 +258,16 @@ def _add_styles(commands: Any) -> None:
     parser = _command(
         commands,
         "styles",
-        "Print all styles with their parameters, or draw one portrait in every style.",
-        "trimotion styles [--json] [PICTURE] [--sheet OUT.png]",
-        "",
+        "Print all styles with their parameters, or one, or draw one portrait in every style.",
+        "trimotion styles [NAME] [--json]\n       trimotion styles [PICTURE] --sheet OUT.png",
     )
     parser.add_argument(
         "picture",
-        metavar="PICTURE",
+        metavar="NAME|PICTURE",
         nargs="?",
         type=text_value,
-        help="what the sheet shows (default: the portrait among the sample clips)",
+        help="the style that is told of; with --sheet what is drawn (default: the portrait among "
+        "the sample clips)",
     )
     parser.add_argument(
         "--sheet", metavar="OUT.png", type=text_value, help="write a picture of all styles"
@@ -261,29 +279,65 @@ def _add_styles(commands: Any) -> None:
     parser.add_argument("--json", action="store_true", help="print JSON")
 
 
+def _add_help(commands: Any) -> None:
+    parser = _command(
+        commands, "help", "Print what the program or a command does.", "trimotion help [COMMAND]"
+    )
+    parser.add_argument(
+        "topic", metavar="COMMAND", nargs="?", type=text_value, help="one of the commands"
+    )
+
+
 def _command(
-    commands: Any, name: str, description: str, usage: str, epilog: str
+    commands: Any, name: str, description: str, usage: str, more: str = ""
 ) -> argparse.ArgumentParser:
     parser: argparse.ArgumentParser = commands.add_parser(
         name,
         prog=f"trimotion {name}",
         description=description,
         usage=usage,
-        epilog=epilog,
+        epilog=more + shown(EXAMPLES[name]),
         formatter_class=argparse.RawDescriptionHelpFormatter,
         allow_abbrev=False,
     )
-    parser.add_argument("--debug", action="store_true", help="show where an error arose")
+    # absent if not given: it may have been given before the command
+    parser.add_argument(
+        "--debug",
+        action="store_true",
+        default=argparse.SUPPRESS,
+        help="show where an error arose",
+    )
     parser.set_defaults(command=name)
     return parser
 
 
-def _unknown(arguments: Sequence[str], known: Sequence[str]) -> str:
+def _no_command(word: str, known: Iterable[str]) -> str:
+    """What to say about a first word that is no command."""
+    if Path(word).suffix or Path(word).exists():
+        return f"{word!r}: a command comes first, as in trimotion animate {word} -o OUTPUT"
+    return f"{word!r}: no such command; {nearest(word, known)}"
+
+
+def _unknown(arguments: Sequence[str], known: Sequence[str], command: str) -> str:
     """What to say about arguments that no option takes."""
     first = arguments[0].split("=")[0]
     if not first.startswith("-"):
         return f"{arguments[0]!r}: unknown argument"
+    owners = commands_with(first.lstrip("-"))
+    if owners:
+        some = ", ".join(owners[:-1])
+        owned = f"{some} and {owners[-1]}" if some else owners[-1]
+        return f"{first}: is an option of {owned}, not of {command}{_why(command, first)}"
     begun = [option for option in known if option.startswith(first)]
     similar = begun or difflib.get_close_matches(first, known, n=1)
     hint = f"; did you mean {similar[0]}?" if similar else ""
     return f"{arguments[0]!r}: unknown option{hint}"
+
+
+def _why(command: str, flag: str) -> str:
+    """What to do with an option that others have and a command has not."""
+    if command == "render":
+        return f", which draws what was solved; solve again with {flag}"
+    if command == "solve":
+        return f", which draws nothing; give {flag} to render"
+    return ""

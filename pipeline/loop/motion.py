@@ -15,6 +15,7 @@ import numpy as np
 from pipeline.loop.attention import reach_of
 from pipeline.loop.shots import AHEAD, ShotFrame
 from pipeline.options.solve_options import SolveOptions
+from pipeline.track import refuse_track
 from pipeline.track.cuts import read_cuts
 from pipeline.track.resume import Reached
 from stages.flows.passage import Passage
@@ -55,6 +56,7 @@ def open_around(options: SolveOptions, reached: Reached | None) -> Decoder:
     Raises:
         MediaError: If the source cannot be read.
     """
+    refuse_track(options.source)
     wanted = options.frame_range
     before, after = reach_of(options.foci)
     if reached is not None and reached.frame >= wanted.first - before * wanted.step:

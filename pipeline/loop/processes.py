@@ -25,7 +25,7 @@ from pipeline.options.output import Output
 from pipeline.options.run import Run
 from pipeline.options.solve_options import SolveOptions
 from pipeline.progress import Progress
-from pipeline.track import TrackReader, join
+from pipeline.track import TrackReader, join, refuse_track
 from pipeline.track.resume import check_track_place
 from pipeline.track.schema import ENDING
 from stages.media import FrameRange, probe
@@ -71,6 +71,7 @@ def animate_in_parts(job: Job, progress: Progress) -> Animated:
     both = _Halves(progress)
     options, output = job.solve, job.output
     assert output.path is not None
+    refuse_track(options.source)
     info = probe(options.source, read=options.read)
     check_followed(job, info)
     check_drawing(job, info)

@@ -211,6 +211,16 @@ def add_range_options(parser: argparse.ArgumentParser) -> None:
         _add(group, Option(declared.name, declared.name, declared))
 
 
+def commands_with(flag: str) -> list[str]:
+    """Commands that have an option of a job.
+
+    Args:
+        flag: Its name without dashes in front.
+    """
+    found = [option for option in job_options() if option.flag == flag]
+    return [name for name, has in COMMAND_OPTIONS.items() if any(map(has, found))]
+
+
 def registry_help() -> str:
     """A paragraph that lists the members of every registry with their parameters."""
     lines = ["members and their parameters (NAME or NAME:KEY=VALUE,KEY=VALUE):"]

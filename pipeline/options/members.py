@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from pipeline.options.declared import own_first
+from pipeline.options.nearest import nearest
 from stages.masks.gray import read_gray
 from stages.masks.regions import Region
 from stages.media import input_pattern
@@ -34,7 +35,7 @@ def parse_member(flag: str, text: str, registry: Mapping[str, type]) -> Any:
     """
     name, _, rest = text.partition(":")
     if name not in registry:
-        raise OptionError(f"{flag} {text}: no {name!r}; choose from {', '.join(registry)}")
+        raise OptionError(f"{flag} {text}: {_no_member(text, registry)}")
     cls = registry[name]
     kinds = _parameters(cls)
     values: dict[str, Any] = {}
@@ -50,6 +51,18 @@ def parse_member(flag: str, text: str, registry: Mapping[str, type]) -> Any:
     except OptionError as error:
         problem = str(error).removeprefix(f"{text}: ")
         raise OptionError(f"{flag} {text}: {problem}") from error
+
+
+def _no_member(text: str, registry: Mapping[str, type]) -> str:
+    """What to say about a specification whose name is none."""
+    name, _, rest = text.partition(":")
+    owner, equals, value = name.partition("=")
+    if equals and owner in registry:
+        first = next(iter(_parameters(registry[owner])), None)
+        if first is not None:
+            written = ",".join(filter(None, [f"{first}={value}", rest]))
+            return f"a parameter has its name after a colon; write {owner}:{written}"
+    return f"no {name!r}; {nearest(name, registry)}"
 
 
 def parse_region(flag: str, text: str, styles: Mapping[str, type]) -> Region:

@@ -6,6 +6,7 @@ It is the seam between solving and shading: solve once, draw in ten styles, cont
 from pipeline.track.header import Header
 from pipeline.track.identity import SourceIdentity, identity_of
 from pipeline.track.join import join
+from pipeline.track.not_a_source import refuse_track
 from pipeline.track.reader import FrameRow, TrackReader, is_track
 from pipeline.track.writer import TrackWriter
 
@@ -18,4 +19,5 @@ __all__ = [
     "identity_of",
     "is_track",
     "join",
+    "refuse_track",
 ]

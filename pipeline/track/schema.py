@@ -33,6 +33,11 @@ MOST_BYTES = 1 << 27
 """Largest field that is read or written [bytes]: SQLite itself would take a gigabyte."""
 MOST_TRIANGLES = 1 << 20
 """Most triangles of a frame: a stranger's file may not ask for more memory than they need."""
+NO_TRACK = (
+    "{}: is no mesh track; give a file that trimotion solve wrote, or convert a source with "
+    "trimotion animate"
+)
+"""What to say about another file."""
 WAIT = 10.0
 """How long to wait for another process that writes [s]."""
 
@@ -211,7 +216,7 @@ def _check_file(path: Path) -> None:
         reason = str(getattr(error, "strerror", None) or error).lower()
         raise TrackError(f"{path}: cannot be read ({reason}); give the name of a track") from error
     if len(head) < 100 or not head.startswith(MAGIC):
-        raise TrackError(f"{path}: is no mesh track; give a file that trimotion solve wrote")
+        raise TrackError(NO_TRACK.format(path))
 
 
 def _check_length(path: Path) -> None:
@@ -235,7 +240,7 @@ def _check_form(path: Path, connection: sqlite3.Connection) -> None:
     """Refuse files of other programs and of other versions."""
     (application,) = connection.execute("PRAGMA application_id").fetchone()
     if application != APPLICATION:
-        raise TrackError(f"{path}: is no mesh track; give a file that trimotion solve wrote")
+        raise TrackError(NO_TRACK.format(path))
     (form,) = connection.execute("PRAGMA user_version").fetchone()
     if form != FORMAT:
         raise TrackError(
