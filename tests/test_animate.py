@@ -265,7 +265,7 @@ def test_failure_anywhere_leaves_nothing(place: str, clip: Path, tmp_path: Path)
     owners = {
         "Renderer.render": pipeline.look.drawing.Renderer,
         "Triangulator.next": Triangulator,
-        "Dis.estimate": type(job_of(clip, tmp_path / "x.mp4").flow),
+        "Dis.estimate": type(job_of(clip).solve.flow),
     }
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(owners[place], place.split(".")[1], fail)
