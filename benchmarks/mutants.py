@@ -51,7 +51,7 @@ MUTANTS = (
     Mutant(
         "same picture keeps its mesh whatever its weights",
         "pipeline/loop/motion.py",
-        "passage.is_still and not job.maps and",
+        "passage.is_still and not options.maps and",
         "passage.is_still and",
         "tests/test_track.py -k same_picture",
     ),
@@ -146,7 +146,7 @@ MUTANTS = (
     Mutant(
         "another source goes on with a track",
         "pipeline/track/resume.py",
-        "    header.source.check(job.source)\n",
+        "    header.source.check(options.source)\n",
         "",
         "tests/test_track.py -k other_source",
     ),

@@ -145,7 +145,7 @@ def test_arrays_are_no_larger_than_they_say() -> None:
 
 @pytest.mark.parametrize("size", [(WIDTH + 1, HEIGHT), (WIDTH, HEIGHT + 1), (2 * WIDTH, HEIGHT)])
 def test_mesh_of_another_picture_is_told(size: tuple[int, int]) -> None:
-    """All is in order with it, but it leaves a part of the picture uncovered: a column is enough."""
+    """All is in order with it, but a part of the picture is uncovered: a column is enough."""
     mesh = random_mesh(1)
     assert_sound(mesh)
     with pytest.raises(InvalidMeshError, match="over a picture"):

@@ -13,9 +13,9 @@ from pathlib import Path
 import numpy as np
 
 from pipeline.envelope import InShot, MeshFrom, Prepared
-from pipeline.job import Job
 from pipeline.loop.attention import reach_of
 from pipeline.loop.shots import AHEAD
+from pipeline.options.solve_options import SolveOptions
 from pipeline.track import refuse_track
 from pipeline.track.cuts import read_cuts
 from pipeline.track.resume import Reached
@@ -30,39 +30,40 @@ BEFORE = AHEAD + 2
 at, and one more for the deinterlacer."""
 
 
-def open_around(job: Job, reached: Reached | None) -> Decoder:
+def open_around(options: SolveOptions, reached: Reached | None) -> Decoder:
     """Open a source for a range and the frames around it.
 
     Args:
-        job: Says what is wanted.
+        options: Say what is wanted.
         reached: Where an earlier run ended, or None. Its frame is given again: motion leads from
             its picture to the next.
 
     Raises:
         MediaError: If the source cannot be read.
     """
-    refuse_track(job.source)
-    wanted = job.frame_range
-    before, after = reach_of(job.foci)
+    refuse_track(options.source)
+    wanted = options.frame_range
+    before, after = reach_of(options.foci)
     if reached is not None and reached.frame >= wanted.first - before * wanted.step:
         last = None if wanted.last is None else max(wanted.last, reached.frame)
         # what its weights depend on is decoded again as well, but only then: a range that begins
         # inside a shot starts anew there
         first = min(wanted.first, reached.frame) if before else reached.frame
         wanted = replace(wanted, first=first, last=last)
-        if input_pattern(job.source) is not None:  # whose margin costs no memory, and has gaps
+        if input_pattern(options.source) is not None:  # whose margin costs no memory, and has gaps
             margin = (BEFORE + before, AHEAD + after)
-            return open_decoder(job.source, wanted, margin=margin, read=job.read)
+            return open_decoder(options.source, wanted, margin=margin, read=options.read)
         back = wanted.step * min(before, first // wanted.step)
         if back:
             wanted = replace(wanted, first=first - back, start_time=None)
-    return open_decoder(job.source, wanted, margin=(BEFORE, AHEAD + after), read=job.read)
+    margin = (BEFORE, AHEAD + after)
+    return open_decoder(options.source, wanted, margin=margin, read=options.read)
 
 
 def with_motion(
     frames: Iterable[InShot],
     info: MediaInfo,
-    job: Job,
+    options: SolveOptions,
     reached: Reached | None,
     notes: list[str],
 ) -> Iterator[Prepared]:
@@ -71,10 +72,10 @@ def with_motion(
     Args:
         frames: The frames of the range and around it.
         info: The source.
-        job: Says what is wanted and how motion is estimated.
+        options: Say what is wanted and how motion is estimated.
         reached: Where an earlier run ended, or None. If the solution goes on from there, that frame
             is given once more before the first one.
-        notes: Receives a sentence if a track begins inside a shot.
+        notes: Receives a sentence if a mesh begins inside a shot.
     """
     before: Frame | None = None
     earlier: View | None = None
@@ -83,9 +84,10 @@ def with_motion(
     for seen in frames:
         frame = seen.frame
         later = View(frame.pixels)
-        if holds(job.frame_range, frame, info) and (reached is None or frame.index > reached.frame):
+        is_new = reached is None or frame.index > reached.frame
+        if is_new and holds(options.frame_range, frame, info):
             joined = before is not None and before.index == last
-            if job.track is not None and not (joined or seen.opens_shot or job.independent):
+            if not (joined or seen.opens_shot or options.independent):
                 notes.append(_restart(frame.index))
             if reached is not None and before is not None and before.index == reached.frame == last:
                 yield Prepared(reached.shot, before, MeshFrom.TRACK)
@@ -93,24 +95,24 @@ def with_motion(
                 shot = frame.index
             mesh_from: Passage | MeshFrom = MeshFrom.LAYOUT
             if before is not None and earlier is not None and shot != frame.index:
-                mesh_from = _mesh_from(job, before, frame, earlier, later)
+                mesh_from = _mesh_from(options, before, frame, earlier, later)
             yield Prepared(shot, frame, mesh_from)
             last = frame.index
         before, earlier = frame, later
 
 
 def _mesh_from(
-    job: Job, before: Frame, frame: Frame, earlier: View, later: View
+    options: SolveOptions, before: Frame, frame: Frame, earlier: View, later: View
 ) -> Passage | MeshFrom:
     """Where the mesh of a frame comes from within a shot.
 
     A picture that comes again, as in what is drawn for every other frame, keeps its mesh; under
     maps, which may change meanwhile, only its motion is known.
     """
-    if job.independent:
+    if options.independent:
         return MeshFrom.LAYOUT
-    passage = Passage.between(job.flow, earlier, later)
-    is_same = passage.is_still and not job.maps and _weigh_alike(before.weights, frame.weights)
+    passage = Passage.between(options.flow, earlier, later)
+    is_same = passage.is_still and not options.maps and _weigh_alike(before.weights, frame.weights)
     return MeshFrom.SAME_PICTURE if is_same else passage
 
 
