@@ -44,14 +44,14 @@ MUTANTS = (
     Mutant(
         "same picture is solved again",
         "pipeline/loop/animate.py",
-        "step.repeats and not job.maps",
+        "step.repeats and not options.maps",
         "False",
         "tests/test_track.py -k same_picture",
     ),
     Mutant(
         "same picture keeps its mesh whatever its weights",
         "pipeline/loop/animate.py",
-        "step.repeats and not job.maps",
+        "step.repeats and not options.maps",
         "step.repeats",
         "tests/test_track.py -k same_picture",
     ),
@@ -146,7 +146,7 @@ MUTANTS = (
     Mutant(
         "another source goes on with a track",
         "pipeline/track/resume.py",
-        "    header.source.check(job.source)\n",
+        "    header.source.check(options.source)\n",
         "",
         "tests/test_track.py -k other_source",
     ),

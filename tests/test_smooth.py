@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pipeline.job import Job
 from pipeline.look.drawn_frame import Take
 from pipeline.look.smooth import Smoother, reach_of
+from pipeline.options.look import Look
 from stages.mesh import Mesh
 from stages.motion.correspondence import kept_vertices
 from stages.snapshot import Snapshot, with_origins
@@ -169,7 +169,7 @@ def test_polynomials_move_to_other_origins(rng: np.random.Generator) -> None:
 
 
 @pytest.mark.parametrize("option", [{"smooth": -1.0}, {"smooth": 51.0}, {"blend": -1}])
-def test_impossible_values_are_refused(option: dict, tmp_path) -> None:
+def test_impossible_values_are_refused(option: dict) -> None:
     """The message names the option and the limits."""
     with pytest.raises(OptionError, match=r"--(smooth|blend) .* between 0 \(off\) and"):
-        Job(tmp_path, tmp_path, **option)
+        Look(**option)

@@ -9,7 +9,6 @@ from scipy.ndimage import gaussian_filter
 
 import stages.triangulate
 from pipeline.cli import main
-from pipeline.job import Job
 from pipeline.loop.animate import animate
 from pipeline.progress import Progress
 from stages.frame import Frame
@@ -18,6 +17,7 @@ from stages.media import FrameRange, open_decoder
 from stages.topology.refine import RefineOptions
 from stages.triangulate import TriangulateOptions
 from tests import media_samples as samples
+from tests.jobs import job_of
 from tests.kernel_samples import frame_of
 from warp_kernels.energy.workspace import Workspace
 from warp_kernels.errors import MediaError
@@ -257,10 +257,10 @@ def test_mistakes_are_one_line(
 def test_weights_go_where_vertices_move(workspaces, tmp_path: Path) -> None:
     """Frame by frame to the workspace that is optimised; colours are fitted without them."""
     source = samples.write_video(tmp_path / "in.mp4", [samples.picture(*SIZE, n) for n in range(6)])
-    job = Job(
+    job = job_of(
         source,
         tmp_path / "out.mp4",
-        FrameRange(1, 5, 2),
+        frame_range=FrameRange(1, 5, 2),
         triangulate=QUICK,
         styles=(STYLES["gradient"](),),
         weights=str(write_stills(tmp_path, range(6))),
@@ -276,7 +276,7 @@ def test_weights_go_where_vertices_move(workspaces, tmp_path: Path) -> None:
 def test_no_map_asks_for_no_weights(workspaces, tmp_path: Path) -> None:
     """Without the option, and without a face, everything is as it was."""
     source = samples.write_still(tmp_path / "in.png", samples.picture(*SIZE))
-    animate(Job(source, tmp_path / "out.png", triangulate=QUICK), Progress())
+    animate(job_of(source, tmp_path / "out.png", triangulate=QUICK), Progress())
     (workspace,) = workspaces
     assert not workspace.weighted
     assert workspace.loaded == [None]
@@ -289,9 +289,11 @@ def test_told_error_is_that_of_all_pixels(tmp_path: Path) -> None:
     half = np.full_like(picture, 10)
     half[:, :80] = 255
     weights = str(samples.write_still(tmp_path / "map.png", half))
-    job = Job(source, tmp_path / "out.png", triangulate=QUICK, weights=weights)
+    job = job_of(source, tmp_path / "out.png", triangulate=QUICK, weights=weights)
     told = animate(job, Progress()).mean_rmse
-    assert told == pytest.approx(np.sqrt((halves_rmse(picture, job.output) ** 2).mean()), rel=0.1)
+    assert told == pytest.approx(
+        np.sqrt((halves_rmse(picture, job.output.path) ** 2).mean()), rel=0.1
+    )
 
 
 @pytest.mark.parametrize("wrong", [np.ones((3, 3), np.uint8), np.ones((32, 48), np.float32)])
@@ -326,7 +328,7 @@ def test_white_half_is_approximated_better(style: str, tmp_path: Path) -> None:
     errors = {}
     for name, weights in maps.items():
         wanted = TriangulateOptions(iterations=120, refine=RefineOptions(triangles=200))
-        job = Job(
+        job = job_of(
             source,
             tmp_path / f"{name}.png",
             triangulate=wanted,
@@ -334,7 +336,7 @@ def test_white_half_is_approximated_better(style: str, tmp_path: Path) -> None:
             weights=weights and str(weights),
         )
         animate(job, Progress())
-        errors[name] = halves_rmse(picture, job.output)
+        errors[name] = halves_rmse(picture, job.output.path)
     assert errors["even"][0] == pytest.approx(errors["even"][1], rel=0.1)
     assert errors["left"][0] < 0.9 * errors["even"][0]
     assert errors["left"][1] > errors["even"][1]
@@ -345,7 +347,7 @@ def test_white_map_changes_nothing_but_rounding(tmp_path: Path) -> None:
     pictures = [np.roll(texture(), n, axis=1) for n in range(3)]
     source = samples.write_video(tmp_path / "in.mp4", pictures, options={"crf": "10"})
     white = samples.write_still(tmp_path / "white.png", level(255, (160, 120)))
-    jobs = [Job(source, tmp_path / f"{w is None}.mp4", triangulate=QUICK, weights=w)
+    jobs = [job_of(source, tmp_path / f"{w is None}.mp4", triangulate=QUICK, weights=w)
             for w in (None, str(white))]  # fmt: skip
     even, weighted = (animate(job, Progress()).mean_rmse for job in jobs)
     assert weighted == pytest.approx(even, rel=0.05)

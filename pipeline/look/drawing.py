@@ -31,16 +31,19 @@ class Drawing:
 
     def __init__(self, job: Job, info: MediaInfo, device: Device) -> None:
         picture = (info.width, info.height)
-        size = job.size_for(picture)
-        masked = tuple(region.style for region in job.regions)
-        followed = tuple(i for i, region in enumerate(job.regions) if region.frames)
-        self._renderer = Renderer(device, picture, size, job.shown_styles, masked, followed)
-        self._masks = open_masks(job.unfollowed, picture)
-        self._encoder = open_encoder(job.output, info, size, job.encode, job.frame_range)
+        options, look, output = job.solve, job.look, job.output
+        assert output.path is not None
+        size = look.size_for(picture)
+        masked = tuple(region.style for region in look.regions)
+        followed = tuple(i for i, region in enumerate(look.regions) if region.frames)
+        styles = look.shown_styles(options.model)
+        self._renderer = Renderer(device, picture, size, styles, masked, followed)
+        self._masks = open_masks(look.unfollowed, picture)
+        self._encoder = open_encoder(output.path, info, size, output.encode, options.frame_range)
         # Where every frame starts anew, triangles of the same number have nothing in common.
-        self._blend = 0 if job.independent else job.blend
-        self._smoother = Smoother(0.0 if job.independent else job.smooth)
-        self._lays_strokes = job.lays_strokes
+        self._blend = 0 if options.independent else look.blend
+        self._smoother = Smoother(0.0 if options.independent else look.smooth)
+        self._lays_strokes = look.lays_strokes and not options.independent
         self._fading: Fading | None = None
         self._strokes: Strokes | None = None
         self._shot: int | None = None
@@ -123,10 +126,11 @@ def check_drawing(job: Job, info: MediaInfo) -> None:
         OutputError: If the output cannot be written.
     """
     picture = (info.width, info.height)
-    for mask in open_masks(job.unfollowed, picture):
+    for mask in open_masks(job.look.unfollowed, picture):
         mask.close()
-    for region in job.followed:
+    for region in job.look.followed:
         for frame in region.frames:
             own_mask(region, frame, picture)
-    size = job.size_for(picture)
-    check_output(job.output, info, size, job.encode, job.frame_range)
+    assert job.output.path is not None
+    size = job.look.size_for(picture)
+    check_output(job.output.path, info, size, job.output.encode, job.solve.frame_range)

@@ -12,9 +12,9 @@ from pathlib import Path
 
 import numpy as np
 
-from pipeline.job import Job
 from pipeline.loop.attention import reach_of
 from pipeline.loop.shots import AHEAD, ShotFrame
+from pipeline.options.solve_options import SolveOptions
 from pipeline.track import refuse_track
 from pipeline.track.cuts import read_cuts
 from pipeline.track.resume import Reached
@@ -45,39 +45,40 @@ class Step:
     """The frame before, where an earlier run ended with it; else None."""
 
 
-def open_around(job: Job, reached: Reached | None) -> Decoder:
+def open_around(options: SolveOptions, reached: Reached | None) -> Decoder:
     """Open a source for a range and the frames around it.
 
     Args:
-        job: Says what is wanted.
+        options: Say what is wanted.
         reached: Where an earlier run ended, or None. Its frame is given again: motion leads from
             its picture to the next.
 
     Raises:
         MediaError: If the source cannot be read.
     """
-    refuse_track(job.source)
-    wanted = job.frame_range
-    before, after = reach_of(job.foci)
+    refuse_track(options.source)
+    wanted = options.frame_range
+    before, after = reach_of(options.foci)
     if reached is not None and reached.frame >= wanted.first - before * wanted.step:
         last = None if wanted.last is None else max(wanted.last, reached.frame)
         # what its weights depend on is decoded again as well, but only then: a range that begins
         # inside a shot starts anew there
         first = min(wanted.first, reached.frame) if before else reached.frame
         wanted = replace(wanted, first=first, last=last)
-        if input_pattern(job.source) is not None:  # whose margin costs no memory, and has gaps
+        if input_pattern(options.source) is not None:  # whose margin costs no memory, and has gaps
             margin = (BEFORE + before, AHEAD + after)
-            return open_decoder(job.source, wanted, margin=margin, read=job.read)
+            return open_decoder(options.source, wanted, margin=margin, read=options.read)
         back = wanted.step * min(before, first // wanted.step)
         if back:
             wanted = replace(wanted, first=first - back, start_time=None)
-    return open_decoder(job.source, wanted, margin=(BEFORE, AHEAD + after), read=job.read)
+    margin = (BEFORE, AHEAD + after)
+    return open_decoder(options.source, wanted, margin=margin, read=options.read)
 
 
 def steps(
     shot_frames: Iterable[ShotFrame],
     info: MediaInfo,
-    job: Job,
+    options: SolveOptions,
     reached: Reached | None,
     notes: list[str],
 ) -> Iterator[Step]:
@@ -86,9 +87,9 @@ def steps(
     Args:
         shot_frames: The frames of the range and around it.
         info: The source.
-        job: Says what is wanted and how motion is estimated.
+        options: Say what is wanted and how motion is estimated.
         reached: Where an earlier run ended, or None.
-        notes: Receives a sentence if a track begins inside a shot.
+        notes: Receives a sentence if a mesh begins inside a shot.
     """
     before: Frame | None = None
     earlier: View | None = None
@@ -97,15 +98,16 @@ def steps(
     for shot_frame in shot_frames:
         frame = shot_frame.frame
         later = View(frame.pixels)
-        if holds(job.frame_range, frame, info) and (reached is None or frame.index > reached.frame):
+        is_new = reached is None or frame.index > reached.frame
+        if is_new and holds(options.frame_range, frame, info):
             joined = before is not None and before.index == last
-            if job.track is not None and not (joined or shot_frame.opens_shot or job.independent):
+            if not (joined or shot_frame.opens_shot or options.independent):
                 notes.append(_restart(frame.index))
             if shot is None or shot_frame.opens_shot or not joined:
                 shot = frame.index
             passage: Passage | None = None
-            if earlier is not None and shot != frame.index and not job.independent:
-                passage = Passage.between(job.flow, earlier, later)
+            if earlier is not None and shot != frame.index and not options.independent:
+                passage = Passage.between(options.flow, earlier, later)
             goes_on = reached is not None and last == reached.frame and joined
             repeats = _repeats(passage, before, frame)
             yield Step(frame, passage, shot, repeats, before if goes_on else None)
