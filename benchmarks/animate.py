@@ -10,7 +10,7 @@ import argparse
 import resource
 import sys
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from time import perf_counter
@@ -21,6 +21,9 @@ from timing import machine, program, table
 
 import pipeline.loop.animate
 from pipeline.job import Job
+from pipeline.options.output import Output
+from pipeline.options.run import Run
+from pipeline.options.solve_options import SolveOptions
 from pipeline.progress import Progress
 from stages.flows.dis import Dis
 from stages.media import EncodeOptions, FrameRange
@@ -112,17 +115,13 @@ def main() -> None:
     )
     with TemporaryDirectory() as folder:
         job = Job(
-            options.clip,
-            Path(folder) / "out.mp4",
-            frame_range=FrameRange(last=2),
-            triangulate=wanted,
-            encode=EncodeOptions(overwrite=True),
-            device=options.device,
-            threads=options.threads,
+            SolveOptions(options.clip, frame_range=FrameRange(last=2), triangulate=wanted),
+            output=Output(Path(folder) / "out.mp4", EncodeOptions(overwrite=True)),
+            run=Run(options.device, options.threads),
         )
         pipeline.loop.animate.animate(job, Progress())
         start_memory = peak_memory()
-        job = Job(**{**vars(job), "frame_range": options.frames})
+        job = replace(job, solve=replace(job.solve, frame_range=options.frames))
         with Watch() as watch:
             done = pipeline.loop.animate.animate(job, Progress())
     print(f"{machine()}; {options.clip.name}, {options.triangles} triangles, {options.color}\n")

@@ -27,6 +27,8 @@ from pipeline.compare.report import FrameFigures, Report
 from pipeline.job import Job
 from pipeline.loop.animate import animate
 from pipeline.options.flags import size
+from pipeline.options.output import Output
+from pipeline.options.solve_options import SolveOptions
 from pipeline.progress import Progress
 from stages.flows.none import NoFlow
 from stages.media import FrameRange, open_decoder
@@ -36,10 +38,10 @@ from stages.triangulate import TriangulateOptions
 ROOT = Path(__file__).parents[1]
 RESULTS = ROOT / "docs" / "results"
 ENDINGS = frozenset({".mp4", ".mov", ".mkv", ".webm", ".avi", ".mpg", ".gif"})
-WAYS: dict[str, Callable[[Job], Job]] = {
-    "tracked": lambda job: job,
-    "warm start": lambda job: replace(job, flow=NoFlow()),
-    "independent": lambda job: replace(job, independent=True),
+WAYS: dict[str, Callable[[SolveOptions], SolveOptions]] = {
+    "tracked": lambda options: options,
+    "warm start": lambda options: replace(options, flow=NoFlow()),
+    "independent": lambda options: replace(options, independent=True),
 }
 """How a clip is converted, by name."""
 HEADS = (
@@ -151,9 +153,10 @@ def convert_and_measure(source: Path, way: str, triangles: int, folder: Path) ->
     name = way.replace(" ", "_")
     wanted = TriangulateOptions(refine=RefineOptions(triangles=triangles))
     track = folder / f"{name}.mtrk"
-    job = Job(source, folder / f"{name}_####.png", track=track, triangulate=wanted)
-    animate(WAYS[way](job), Progress())
-    return measure(source, job.output, FrameRange(), track)
+    output = folder / f"{name}_####.png"
+    options = WAYS[way](SolveOptions(source, triangulate=wanted))
+    animate(Job(options, output=Output(output, track=track)), Progress())
+    return measure(source, output, FrameRange(), track)
 
 
 def row(clip: str, way: str, report: Report) -> tuple[str, ...]:

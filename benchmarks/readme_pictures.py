@@ -1,37 +1,23 @@
-"""Draw the pictures of README again: run the command above each, then put its frames together.
+"""Draw the pictures of README and docs/ again: run each one's command, put its frames together.
 
     python benchmarks/readme_pictures.py [NAME ...] [--keep]
 
-Names are those of `docs/images/`; without one all are drawn. Commands are read from README itself;
-those that it leaves unsaid, such as the same with `--focus none`, stand below.
+Names are those of `docs/images/`; without one all are drawn. Commands are read from README and the
+pages of `docs/` (`doc_commands.py`).
 """
 
 import argparse
 import itertools
-import os
-import re
-import shlex
-import subprocess
 import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import cv2
 import numpy as np
 from contact_sheet import read_frames
+from doc_commands import ROOT, make
 
-ROOT = Path(__file__).parents[1]
 IMAGES = ROOT / "docs" / "images"
-
-UNSAID = """
-trimotion render out/rabbit.mtrk -o out/rabbit.mp4
-trimotion animate sample_videos/astronaut.jpg -o out/even.png --triangles 700 --focus none
-trimotion animate sample_videos/astronaut.jpg -o out/blank.png --triangles 700 --scale 2 \\
-    --focus none
-trimotion animate out/portrait.mp4 -o out/blank.mp4 --triangles 500 --focus none
-"""
-"""Commands that pictures need beside those of README."""
 
 BUNNY = "sample_videos/bigbuckbunny.mp4"
 CITY = "sample_videos/city.mp4"
@@ -84,7 +70,7 @@ PICTURES: dict[str, Picture] = {
         [of("out/alone.mp4", 0, 1, 2), of("out/followed.mp4", 0, 1, 2)], 1280, (700, 150, 480, 280)
     ),
     "focus": Picture(
-        [stills(ASTRONAUT, "out/blank.png", "out/smile.png")], 1024, (180, 60, 520, 500), gap=8
+        [stills(ASTRONAUT, "out/blank.png", "out/poster.png")], 1024, (180, 60, 520, 500), gap=8
     ),
     "focus_clip": Picture(
         [of("out/blank.mp4", 10, 36, 62), of("out/smiling.mp4", 10, 36, 62)], 480, gap=8, quality=86
@@ -99,67 +85,6 @@ PICTURES: dict[str, Picture] = {
     "lights": Picture([of("out/lights.mp4", 0)], 1120),
     "lenses": Picture([of("out/lenses.mp4", 61)], 1120),
 }
-
-
-def commands() -> list[str]:
-    """Every command that writes to `out/`, those of README first."""
-    text = (ROOT / "README.md").read_text(encoding="utf-8")
-    blocks = "".join(re.findall(r"```sh\n(.*?)```", text, flags=re.DOTALL))
-    inline = re.findall(r"`(trimotion [^`]*? out/[^`]*)`", text)
-    lines = [
-        *blocks.replace("\\\n", " ").splitlines(),
-        *inline,
-        *UNSAID.replace("\\\n", " ").splitlines(),
-    ]
-    return [line for line in lines if re.search(r"\bout/", line)]
-
-
-def written_by(command: str) -> str:
-    """Give the file that a command writes, `out/shot_####.png` for numbered stills, or ''."""
-    words = shlex.split(command)
-    for flag in ("-o", "--sheet"):
-        if flag in words:
-            return words[words.index(flag) + 1]
-    return words[-1] if "python" in words else ""
-
-
-def writes(command: str, file: str) -> bool:
-    """Tell whether a file is what a command writes."""
-    pattern = re.escape(written_by(command)).replace(r"\#", "[0-9]")
-    return re.fullmatch(pattern, file) is not None
-
-
-def run(command: str) -> None:
-    """Run a command in the root of the repository with the code that lies there."""
-    print(f"$ {command}", flush=True)
-    words = [word for word in shlex.split(command) if word != "PYTHONPATH=."]
-    for old in ROOT.glob(written_by(command).replace("#", "[0-9]")):
-        old.unlink()
-    start = {"trimotion": ["-m", "pipeline.cli"], "python": []}[words[0]]
-    paths = {**os.environ, "PYTHONPATH": str(ROOT)}
-    subprocess.run([sys.executable, *start, *words[1:]], cwd=ROOT, env=paths, check=True)
-
-
-def make(file: str, made: set[str], keep: bool) -> None:
-    """Make a file of `out/`, and before it what its command reads.
-
-    Args:
-        file: From the root of the repository.
-        made: Commands that have run; grows.
-        keep: Whether a file that is there already is good enough.
-    """
-    if not file.startswith("out/") or (keep and (ROOT / file).exists()):
-        return
-    command = next((line for line in commands() if writes(line, file)), None)
-    if command is None:
-        raise ValueError(f"{file}: no command of README writes it; add one to UNSAID")
-    if command in made:
-        return
-    for word in shlex.split(command):
-        if word.startswith("out/") and word != written_by(command):
-            make(word, made, keep)
-    run(command)
-    made.add(command)
 
 
 def look(cell: Cell, picture: Picture) -> np.ndarray:
@@ -203,7 +128,7 @@ def draw(name: str) -> None:
 def main() -> int:
     """Read the command line and draw."""
     names = [*PICTURES, "stretch"]
-    parser = argparse.ArgumentParser(description="Draw the pictures of README again.")
+    parser = argparse.ArgumentParser(description="Draw the pictures of README and docs/.")
     parser.add_argument("names", nargs="*", metavar="NAME", help=f"of {', '.join(names)}")
     parser.add_argument("--keep", action="store_true", help="take files of out/ as they are")
     options = parser.parse_args()

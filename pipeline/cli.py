@@ -81,14 +81,14 @@ def run_animate(arguments: argparse.Namespace) -> None:
     """
     job = _job(arguments)
     with _progress(arguments) as progress:
-        if job.jobs > 1 or job.followed:
+        if job.run.jobs > 1 or job.look.followed:
             from pipeline.loop.processes import animate_in_parts
 
-            _tell(progress, animate_in_parts(job, progress), job.output)
+            _tell(progress, animate_in_parts(job, progress), job.output.path)
         else:
             from pipeline.loop.animate import animate
 
-            _tell(progress, animate(job, progress), job.output)
+            _tell(progress, animate(job, progress), job.output.path)
 
 
 def run_solve(arguments: argparse.Namespace) -> None:
@@ -98,16 +98,17 @@ def run_solve(arguments: argparse.Namespace) -> None:
         arguments: What the user gave; options that were left out are absent.
     """
     # Looks, which a preset may hold, do not belong to a track.
-    job = _job(arguments, track=arguments.output, styles=(), regions=())
+    job = _job(arguments, track=arguments.output, output=None, styles=(), regions=())
+    parts = job.solve, job.output, job.run
     with _progress(arguments) as progress:
-        if job.jobs > 1:
+        if job.run.jobs > 1:
             from pipeline.loop.processes import solve_in_parts
 
-            _tell(progress, solve_in_parts(job, progress), job.track or job.output)
+            _tell(progress, solve_in_parts(*parts, progress), job.output.track)
         else:
             from pipeline.loop.animate import solve
 
-            _tell(progress, solve(job, progress), job.track or job.output)
+            _tell(progress, solve(*parts, progress), job.output.track)
 
 
 def run_render(arguments: argparse.Namespace) -> None:
@@ -116,19 +117,23 @@ def run_render(arguments: argparse.Namespace) -> None:
     Args:
         arguments: What the user gave; options that were left out are absent.
     """
+    from pipeline.options.build import build_render
+
+    path = Path(arguments.track)
     source = None if arguments.source is None else Path(arguments.source)
-    look = _job(arguments, source=arguments.track, track=None)
+    wanted = build_render(_given(arguments), path)
     from pipeline.look.render_job import render_job
     from pipeline.loop.animate import render
     from pipeline.track import TrackReader
 
-    with TrackReader(look.source) as track, _progress(arguments) as progress:
-        made = render_job(look, track, source)
+    with TrackReader(path) as track, _progress(arguments) as progress:
+        made = render_job(track, *wanted, source)
         for note in made.notes:
             progress.note(note)
         for warning in made.warnings:
             progress.warn(warning)
-        _tell(progress, render(made.job, track, made.info, progress), look.output)
+        result = render(made.job, track, made.info, progress)
+        _tell(progress, result, made.job.output.path)
 
 
 def run_plan(arguments: argparse.Namespace) -> None:
@@ -138,9 +143,9 @@ def run_plan(arguments: argparse.Namespace) -> None:
         arguments: What the user gave; options that were left out are absent.
     """
     from pipeline.loop.plan import plan
-    from pipeline.options.build import build_job
+    from pipeline.options.build import build_solve
 
-    found = plan(build_job({**vars(arguments), "output": ""}), arguments.parts)
+    found = plan(build_solve(vars(arguments)), arguments.parts)
     print(found.as_json() if arguments.json else found.as_lines())
 
 
@@ -245,12 +250,18 @@ def _job(arguments: argparse.Namespace, **fixed: object) -> "Job":
         fixed: What the command decides itself.
     """
     from pipeline.options.build import build_job
+
+    return build_job({**_given(arguments), **fixed})
+
+
+def _given(arguments: argparse.Namespace) -> dict[str, object]:
+    """What the arguments and their preset give."""
     from pipeline.options.command_line import with_preset
     from pipeline.options.presets import read_preset
 
     given = dict(vars(arguments))
     name = given.pop("preset")
-    return build_job({**with_preset(given, read_preset(name) if name else {}), **fixed})
+    return with_preset(given, read_preset(name) if name else {})
 
 
 def _progress(arguments: argparse.Namespace) -> "Progress":
@@ -262,8 +273,9 @@ def _progress(arguments: argparse.Namespace) -> "Progress":
     return open_progress(chosen, verbose=verbose)
 
 
-def _tell(progress: "Progress", result: "Animated", output: Path) -> None:
+def _tell(progress: "Progress", result: "Animated", output: Path | None) -> None:
     """Tell what came of a run."""
+    assert output is not None
     from pipeline.commands.pipes import shown_name
     from pipeline.progress import Summary
 

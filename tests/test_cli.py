@@ -300,9 +300,9 @@ def test_animate_hands_over_the_job(fake_animate: list, capsys) -> None:
     options = "--triangles 70 --style flat --style edges:width=2 --threads 3 --progress plain"
     assert main(["animate", "in.mp4", "-o", "out.mp4", "--no-audio", *options.split()]) == 0
     (job,) = fake_animate
-    assert job.triangulate.refine.triangles == 70
-    assert [type(style).__name__ for style in job.styles] == ["Flat", "Edges"]
-    assert (job.threads, job.encode.threads, job.encode.audio) == (3, 3, False)
+    assert job.solve.triangulate.refine.triangles == 70
+    assert [type(style).__name__ for style in job.look.styles] == ["Flat", "Edges"]
+    assert (job.run.threads, job.output.encode.threads, job.output.encode.audio) == (3, 3, False)
     captured = capsys.readouterr()
     assert captured.out == ""
     assert "2 frames in 0.5 s (4.0 fps), mean rmse 21.00: out.mp4" in captured.err

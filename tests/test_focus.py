@@ -12,13 +12,13 @@ import numpy as np
 import pytest
 
 from pipeline.cli import main
-from pipeline.job import Job
+from pipeline.envelope import InShot
 from pipeline.loop.animate import animate
 from pipeline.loop.attention import UNIT, WINDOW, Attention, reach_of
 from pipeline.loop.face_tracks import CARRIED, MEMORY, SPACING, FaceTracks
 from pipeline.loop.processes import solve_in_parts
-from pipeline.loop.shots import ShotFrame
 from pipeline.options.members import parse_member
+from pipeline.options.solve_options import SolveOptions
 from pipeline.progress import Progress
 from pipeline.track import TrackReader
 from pipeline.track.plain_values import from_plain, to_plain
@@ -35,6 +35,7 @@ from stages.layouts.importance import Importance
 from stages.media import open_decoder, probe
 from stages.triangulate import Triangulator
 from tests import media_samples as samples
+from tests.jobs import job_of
 from tests.kernel_samples import frame_of
 from tests.tracks import QUICK, rows_of, solve_to
 from warp_kernels.device.device import Device
@@ -99,12 +100,9 @@ def whole(clip: Path) -> Path:
     return track
 
 
-def shot_frames(pictures: list[np.ndarray], first: int = 0) -> list[ShotFrame]:
+def shot_frames(pictures: list[np.ndarray], first: int = 0) -> list[InShot]:
     """Frames of one shot."""
-    return [
-        ShotFrame(frame_of(picture, first + n), opens_shot=n == 0)
-        for n, picture in enumerate(pictures)
-    ]
+    return [InShot(first, frame_of(picture, first + n)) for n, picture in enumerate(pictures)]
 
 
 def weights_of(pictures: list[np.ndarray], *members: object, first: int = 0) -> list[np.ndarray]:
@@ -124,9 +122,9 @@ def test_members_are_named_stored_and_told(name: str, tmp_path: Path) -> None:
     text = spec.get(name, f"{name}:strength=0.5")
     member = parse_member("--focus", text, FOCI)
     assert from_plain(type(member), to_plain(member)) == member
-    job = Job(PORTRAIT, tmp_path / "o.png", focus=(member,))
-    assert from_plain(Job, to_plain(job)).focus == (member,)
-    assert spelled(job.foci).startswith(name)
+    options = SolveOptions(PORTRAIT, focus=(member,))
+    assert from_plain(SolveOptions, to_plain(options)).focus == (member,)
+    assert spelled(options.foci).startswith(name)
     if isinstance(member, Glance):
         for picture in (samples.picture(48, 32), np.zeros((1, 1, 3), np.uint8)):
             seen = member.glance(frame_of(picture[::-1].copy(), 0), frame_of(picture, 1))
@@ -265,7 +263,7 @@ def test_face_is_drawn_better_and_told_honestly(portrait: np.ndarray, tmp_path: 
     wanted = replace(QUICK, iterations=120, refine=replace(QUICK.refine, triangles=400))
     for name, focus in (("none", NoFocus()), ("auto", Auto())):
         output = tmp_path / f"{name}.png"
-        job = Job(PORTRAIT, output, triangulate=wanted, focus=(focus,))
+        job = job_of(PORTRAIT, output, triangulate=wanted, focus=(focus,))
         told[name] = animate(job, Progress()).mean_rmse
         with open_decoder(output) as decoder:
             squares = (next(decoder).pixels.astype(float) - portrait) ** 2
@@ -289,8 +287,8 @@ def test_ranges_resume_and_jobs_are_the_whole(clip: Path, whole: Path, tmp_path:
         assert rows_of(track)["meshes"] == rows["meshes"][: last + 1]
         solve_to(track, clip, resume=True)
         assert rows_of(track) == rows
-    job = Job(clip, tmp_path / "j.mtrk", track=tmp_path / "j.mtrk", triangulate=QUICK, jobs=2)
-    solve_in_parts(job, Progress())
+    job = job_of(clip, track=tmp_path / "j.mtrk", triangulate=QUICK, jobs=2)
+    solve_in_parts(job.solve, job.output, job.run, Progress())
     assert rows_of(tmp_path / "j.mtrk")["meshes"] == rows["meshes"]
 
 
@@ -305,10 +303,10 @@ def test_track_tells_its_focus(whole: Path, clip: Path, tmp_path: Path, capsys) 
     with TrackReader(track) as reader:
         options = dict(reader.header.options)
     del options["focus"]
-    assert from_plain(Job, options).foci == (Auto(),)  # so a header has to say it
+    assert from_plain(SolveOptions, options).foci == (Auto(),)  # so a header has to say it
     forget_focus(track)
     with TrackReader(track) as reader:
-        assert reader.header.job.foci == ()
+        assert reader.header.solve.foci == ()
 
 
 def forget_focus(track: Path) -> None:

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from pipeline.cli import main
-from pipeline.job import Job
 from pipeline.look.region_masks import check_followed
 from pipeline.loop import processes as parts
 from pipeline.loop.animate import animate
@@ -24,6 +23,7 @@ from stages.motion.inherit_regions import inherited, under_mask
 from stages.render import Renderer
 from tests import media_samples as samples
 from tests.golden_images import write_png
+from tests.jobs import changed, job_of
 from tests.meshes import HEIGHT, WIDTH, random_mesh, two_triangles
 from tests.snapshots import restless_shot, snapshot_with
 from tests.tracks import COUNT, CUT, write_clip
@@ -246,11 +246,11 @@ def test_stills_go_by_their_numbers(clip: Path, tmp_path: Path, capsys) -> None:
 def test_declared_number_of_frames_is_a_hint(clip: Path) -> None:
     """Beyond it frames are counted."""
     mask = Region(str(clip.with_name("mask.png")), Flat(), (COUNT - 1,))
-    job = Job(clip, clip.with_name("out.mp4"), regions=(mask,))
+    job = job_of(clip, clip.with_name("out.mp4"), regions=(mask,))
     for count in (None, 3, COUNT):
         info = replace(probe(clip), frame_count=count)
         check_followed(job, info)
-        beyond = replace(job, regions=(replace(mask, frames=(COUNT,)),))
+        beyond = changed(job, regions=(replace(mask, frames=(COUNT,)),))
         with pytest.raises(OptionError, match="it has frames 0 to 11"):
             check_followed(beyond, info)
 
@@ -284,7 +284,7 @@ def test_nothing_is_drawn_from_stale_memory(clip: Path, tmp_path: Path) -> None:
             renderer.render(snapshot, shares=shares)
     mask = Region(str(clip.with_name("mask.png")), Flat(), (2,))
     with pytest.raises(OptionError, match=r"mask\.png@2"):
-        animate(Job(clip, tmp_path / "out.mp4", regions=(mask,)), Progress())
+        animate(job_of(clip, tmp_path / "out.mp4", regions=(mask,)), Progress())
     assert not list(tmp_path.iterdir())
 
 
@@ -318,8 +318,8 @@ def test_mistakes_are_one_line(
     monkeypatch,
 ) -> None:
     """What is wrong and what may be done instead, before anything is solved; nothing is left."""
-    begun: list[Job] = []
-    monkeypatch.setattr(parts, "solve_in_parts", lambda job, progress: begun.append(job))
+    begun: list[object] = []
+    monkeypatch.setattr(parts, "solve_in_parts", lambda *parts: begun.append(parts))
     names = {"mask": "mask.png", "gap": "gap_%01d.png", "short": "short.mp4", "small": "small.png"}
     masks = {key: clip.with_name(name) for key, name in names.items()}
     text = [flag.format(**masks) for flag in flags]

@@ -8,18 +8,22 @@ import numpy as np
 import pytest
 
 from pipeline.commands.grammar import build_parser
-from pipeline.job import Job
 from pipeline.options.build import build_job
 from pipeline.options.command_line import job_options, with_preset
 from pipeline.options.declared import NO_DEFAULT, declared_fields, declared_registry, own_first
+from pipeline.options.look import Look
 from pipeline.options.members import parse_member
+from pipeline.options.output import Output
 from pipeline.options.presets import read_preset, shipped_presets
+from pipeline.options.run import Run
+from pipeline.options.solve_options import SolveOptions
 from stages.flows import FLOWS
 from stages.flows.dis import Dis
 from stages.layouts import LAYOUTS
 from stages.layouts.importance import Importance
 from stages.media import EncodeOptions
 from stages.triangulate import TriangulateOptions
+from tests.jobs import changed, job_of
 from warp_kernels.errors import OptionError
 from warp_kernels.styles import STYLES
 
@@ -34,7 +38,10 @@ MEMBERS = [
     for name in registry
 ]
 NESTED = [
-    Job,
+    SolveOptions,
+    Look,
+    Output,
+    Run,
     TriangulateOptions,
     EncodeOptions,
     *(
@@ -95,11 +102,9 @@ def test_declaration_that_is_not_literal_is_imported(tmp_path: Path, monkeypatch
 def test_defaults_are_those_of_the_dataclasses() -> None:
     """The command line without options is the job without arguments."""
     job = build_job(parse())
-    plain = Job(Path("in.mp4"), Path("out.mp4"))
-    for field in dataclasses.fields(Job):
-        if field.name != "layout":  # holds an array, so it has no equality
-            assert getattr(job, field.name) == getattr(plain, field.name)
-    assert type(job.layout) is type(plain.layout)
+    plain = job_of(Path("in.mp4"), Path("out.mp4"))
+    assert type(job.solve.layout) is type(plain.solve.layout)
+    assert changed(job, layout=plain.solve.layout) == plain  # it may hold an array
 
 
 def test_every_option_has_help_and_its_own_name() -> None:
@@ -113,13 +118,14 @@ def test_options_reach_their_dataclass() -> None:
     """Values of all depths."""
     options = "--iterations 5 --regularity 0.25 --error 1.5 --crf 30 --size 40x30 --frames 2-8x3"
     job = build_job(parse(*options.split(), "--independent", "--overwrite", "--end", "0:02"))
-    assert job.triangulate.iterations == 5
-    assert job.triangulate.optimize.regularity == 0.25
-    assert job.triangulate.refine.error == 1.5
-    assert (job.encode.crf, job.encode.overwrite, job.independent) == (30, True, True)
-    assert job.output_size == (40, 30)
-    assert (job.frame_range.first, job.frame_range.last, job.frame_range.step) == (2, 8, 3)
-    assert job.frame_range.end_time == 2
+    solve, encode = job.solve, job.output.encode
+    assert solve.triangulate.iterations == 5
+    assert solve.triangulate.optimize.regularity == 0.25
+    assert solve.triangulate.refine.error == 1.5
+    assert (encode.crf, encode.overwrite, solve.independent) == (30, True, True)
+    assert job.look.output_size == (40, 30)
+    wanted = solve.frame_range
+    assert (wanted.first, wanted.last, wanted.step, wanted.end_time) == (2, 8, 3, 2)
 
 
 @pytest.mark.parametrize(
@@ -134,12 +140,12 @@ def test_options_reach_their_dataclass() -> None:
 )
 def test_output_size(options: dict, size: tuple[int, int] | None) -> None:
     """By size or scale; a picture without pixels, or too large, is refused with the numbers."""
-    job = Job(Path("a"), Path("b"), **options)
+    look = Look(**options)
     if size is None:
         with pytest.raises(OptionError, match=r"--scale .* of 640x361: sides must lie between"):
-            job.size_for((640, 361))
+            look.size_for((640, 361))
     else:
-        assert job.size_for((640, 361)) == size
+        assert look.size_for((640, 361)) == size
 
 
 @pytest.mark.parametrize("name", shipped_presets())
@@ -156,24 +162,24 @@ def test_preset_gives_any_option(tmp_path: Path) -> None:
         'no-audio = true\nindependent = false\nstyle = ["flat", "edges:width=3"]\nstart = 1.5\n',
     )
     job = build_job(with_preset(parse(), read_preset(preset)))
-    assert job.triangulate.refine.triangles == 90
-    assert job.triangulate.frame_iterations == 3
-    assert job.scale == 2.0
-    assert isinstance(job.flow, FLOWS["none"])
-    assert (job.encode.audio, job.independent) == (False, False)
-    assert job.styles == (STYLES["flat"](), STYLES["edges"](width=3.0))
-    assert job.frame_range.start_time == 1.5
+    assert job.solve.triangulate.refine.triangles == 90
+    assert job.solve.triangulate.frame_iterations == 3
+    assert job.look.scale == 2.0
+    assert isinstance(job.solve.flow, FLOWS["none"])
+    assert (job.output.encode.audio, job.solve.independent) == (False, False)
+    assert job.look.styles == (STYLES["flat"](), STYLES["edges"](width=3.0))
+    assert job.solve.frame_range.start_time == 1.5
 
 
 def test_command_line_beats_preset(tmp_path: Path) -> None:
     """Given values win, even the default's own; a size drives a preset's scale out."""
     preset = read_preset(write_preset(tmp_path, 'triangles = 90\nscale = 2\nstyle = "edges"'))
     job = build_job(with_preset(parse("--triangles", "1500", "--size", "8x6"), preset))
-    assert job.triangulate.refine.triangles == 1500
-    assert (job.output_size, job.scale) == ((8, 6), None)
-    assert job.styles == (STYLES["edges"](),)
+    assert job.solve.triangulate.refine.triangles == 1500
+    assert (job.look.output_size, job.look.scale) == ((8, 6), None)
+    assert job.look.styles == (STYLES["edges"](),)
     styled = build_job(with_preset(parse("--style", "flat"), preset))
-    assert styled.styles == (STYLES["flat"](),)
+    assert styled.look.styles == (STYLES["flat"](),)
 
 
 @pytest.mark.parametrize(

@@ -1,25 +1,30 @@
 """Ranges are exact: killed, resumed, split or solved side by side, a track has the same bits."""
 
+import json
 import os
 import signal
+import sqlite3
 import subprocess
 import sys
 import time
 from collections.abc import Callable
+from contextlib import closing
 from pathlib import Path
 
 import pytest
 
 from pipeline.cli import main
-from pipeline.job import Job
 from pipeline.loop.animate import animate
 from pipeline.loop.plan import plan
 from pipeline.loop.processes import animate_in_parts, solve_in_parts
+from pipeline.options.solve_options import SolveOptions
 from pipeline.progress import Progress
 from pipeline.track import TrackReader, join
 from stages.media import FrameRange
 from tests import media_samples as samples
+from tests.jobs import job_of
 from tests.tracks import COUNT, CUT, QUICK, QUICK_FLAGS, rows_of, solve_to, write_clip
+from warp_kernels.errors import OptionError
 
 ROOT = Path(__file__).parents[1]
 KILL = """
@@ -151,6 +156,24 @@ def test_interrupted_job_goes_on(clip: Path, whole: Path, tmp_path: Path) -> Non
     assert rows_of(track) == rows_of(whole)
 
 
+def test_track_of_an_earlier_program_goes_on(clip: Path, whole: Path, tmp_path: Path) -> None:
+    """Its header held a whole job: looks, outputs and threads beside what decides meshes."""
+    track = tmp_path / "t.mtrk"
+    solve_to(track, clip, "0-4")
+    job = {"output": "o.mp4", "device": "auto", "threads": 7, "styles": [{"class": "Flat"}]}
+    job |= {"regions": [], "output_size": None, "scale": 2.0, "blend": 0, "smooth": 0.0}
+    job |= {"encode": {"class": "EncodeOptions"}, "track": "t.mtrk", "resume": False, "jobs": 2}
+    with closing(sqlite3.connect(track)) as connection, connection:
+        (text,) = connection.execute("SELECT value FROM header WHERE key = 'options'").fetchone()
+        options = {**json.loads(text), **job, "class": "Job"}
+        update = "UPDATE header SET value = ? WHERE key = 'options'"
+        connection.execute(update, (json.dumps(options),))
+    with pytest.raises(OptionError, match="--seed 1 instead of 0"):
+        solve_to(track, clip, resume=True, seed=1)
+    solve_to(track, clip, resume=True)
+    assert rows_of(track) == rows_of(whole)
+
+
 def test_killed_process_goes_on(clip: Path, whole: Path, tmp_path: Path) -> None:
     """SIGKILL while frames are solved, stored and drawn."""
     track = tmp_path / "t.mtrk"
@@ -172,13 +195,13 @@ def test_range_inside_a_shot_says_so(clip: Path, tmp_path: Path) -> None:
 
 def test_plan_follows_the_shots(clip: Path, capsys) -> None:
     """Ranges begin with shots, wherever the wanted frames begin."""
-    job = Job(clip, clip)
+    job = SolveOptions(clip)
     assert plan(job).as_lines() == f"0-{CUT - 1}\n{CUT}-{COUNT - 1}"
     assert plan(job, 1).as_lines() == f"0-{COUNT - 1}"
     assert plan(job, 9).as_lines() == plan(job).as_lines()
-    part = Job(clip, clip, frame_range=FrameRange(CUT - 1, CUT + 2))
+    part = SolveOptions(clip, frame_range=FrameRange(CUT - 1, CUT + 2))
     assert plan(part).as_lines() == f"{CUT - 1}-{CUT - 1}\n{CUT}-{CUT + 2}"
-    stepped = Job(clip, clip, frame_range=FrameRange(1, None, 4))
+    stepped = SolveOptions(clip, frame_range=FrameRange(1, None, 4))
     assert plan(stepped).as_lines() == "1-5x4\n9-9x4"
     assert main(["plan", str(clip), "--cuts", "none"]) == 0
     assert capsys.readouterr().out == f"0-{COUNT - 1}\n"
@@ -187,7 +210,7 @@ def test_plan_follows_the_shots(clip: Path, capsys) -> None:
 def test_joined_parts_are_the_whole(clip: Path, whole: Path, tmp_path: Path) -> None:
     """The ranges of a plan, solved apart, in any order."""
     parts = []
-    for number, part in enumerate(plan(Job(clip, clip)).ranges):
+    for number, part in enumerate(plan(SolveOptions(clip)).ranges):
         parts.append(tmp_path / f"{number}.mtrk")
         solve_to(parts[-1], clip, str(part))
     join(parts[::-1], tmp_path / "joined.mtrk")
@@ -200,8 +223,8 @@ def test_joined_parts_are_the_whole(clip: Path, whole: Path, tmp_path: Path) -> 
 def test_two_processes_are_one(clip: Path, whole: Path, tmp_path: Path) -> None:
     """Shots solved side by side; nothing is left beside the track."""
     track = tmp_path / "t.mtrk"
-    job = Job(clip, track, track=track, triangulate=QUICK, jobs=2, threads=1)
-    assert solve_in_parts(job, Progress()).frames == COUNT
+    job = job_of(clip, track=track, triangulate=QUICK, jobs=2, threads=1)
+    assert solve_in_parts(job.solve, job.output, job.run, Progress()).frames == COUNT
     assert rows_of(track) == rows_of(whole)
     assert list(tmp_path.iterdir()) == [track]
 
@@ -260,7 +283,7 @@ def test_processes_end_with_the_first(tmp_path: Path) -> None:
 def test_processes_have_one_progress(clip: Path, tmp_path: Path) -> None:
     """It counts to the end once, in order, though frames are solved and then drawn."""
     progress = Counting()
-    job = Job(clip, tmp_path / "o.mkv", triangulate=QUICK, jobs=2, threads=1)
+    job = job_of(clip, tmp_path / "o.mkv", triangulate=QUICK, jobs=2, threads=1)
     animate_in_parts(job, progress)
     assert progress.told == [(done, COUNT) for done in range(1, COUNT + 1)]
 
@@ -271,7 +294,9 @@ def test_animate_goes_on_with_its_track(clip: Path, tmp_path: Path) -> None:
     for name in ("a", "b"):
         out = tmp_path / f"{name}_##.png"
         part = FrameRange(4, 9)
-        jobs.append(Job(clip, out, part, track=tmp_path / f"{name}.mtrk", triangulate=QUICK))
+        jobs.append(
+            job_of(clip, out, frame_range=part, track=tmp_path / f"{name}.mtrk", triangulate=QUICK)
+        )
     animate(jobs[0], Progress())
     with pytest.raises(KeyboardInterrupt):
         animate(jobs[1], Interrupting(4))
@@ -279,14 +304,14 @@ def test_animate_goes_on_with_its_track(clip: Path, tmp_path: Path) -> None:
         "--frames",
         "4-9",
         "--track",
-        str(jobs[1].track),
+        str(jobs[1].output.track),
         "--resume",
         *QUICK_FLAGS,
         "--progress",
         "none",
     ]
-    assert main(["animate", str(clip), "-o", str(jobs[1].output), *flags]) == 0
-    assert rows_of(jobs[0].track) == rows_of(jobs[1].track)
+    assert main(["animate", str(clip), "-o", str(jobs[1].output.path), *flags]) == 0
+    assert rows_of(jobs[0].output.track) == rows_of(jobs[1].output.track)
     for number in range(4, 10):
         names = (tmp_path / f"{name}_{number:02d}.png" for name in ("a", "b"))
         assert len({name.read_bytes() for name in names}) == 1

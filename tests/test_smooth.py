@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pipeline.job import Job
-from pipeline.look.drawn_frame import Take
+from pipeline.envelope import Solved
 from pipeline.look.smooth import Smoother, reach_of
+from pipeline.options.look import Look
 from stages.mesh import Mesh
 from stages.motion.correspondence import kept_vertices
 from stages.snapshot import Snapshot, with_origins
@@ -25,9 +25,9 @@ def smooth(shot: list[Snapshot], sigma: float, first_of_second: int | None = Non
     smoother, found = Smoother(sigma), []
     for number, snapshot in enumerate(shot):
         second = first_of_second is not None and number >= first_of_second
-        found += smoother.add(Take(snapshot, int(second)))
+        found += smoother.add(Solved(int(second), snapshot))
         assert len(smoother._window) <= 2 * reach_of(sigma) + 1
-    return [take.snapshot for take in [*found, *smoother.rest()]]
+    return [solved.snapshot for solved in [*found, *smoother.rest()]]
 
 
 def paths(shot: list[Snapshot]) -> np.ndarray:
@@ -169,7 +169,7 @@ def test_polynomials_move_to_other_origins(rng: np.random.Generator) -> None:
 
 
 @pytest.mark.parametrize("option", [{"smooth": -1.0}, {"smooth": 51.0}, {"blend": -1}])
-def test_impossible_values_are_refused(option: dict, tmp_path) -> None:
+def test_impossible_values_are_refused(option: dict) -> None:
     """The message names the option and the limits."""
     with pytest.raises(OptionError, match=r"--(smooth|blend) .* between 0 \(off\) and"):
-        Job(tmp_path, tmp_path, **option)
+        Look(**option)

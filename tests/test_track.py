@@ -14,8 +14,8 @@ import numpy as np
 import pytest
 
 from pipeline.cli import main
-from pipeline.job import Job
 from pipeline.loop.animate import animate
+from pipeline.options.solve_options import SolveOptions
 from pipeline.progress import Progress
 from pipeline.track import TrackReader, TrackWriter
 from pipeline.track.agreement import differing_flags
@@ -27,6 +27,7 @@ from stages.media import FrameRange
 from stages.validate import assert_valid
 from tests import media_samples as samples
 from tests.bad_tracks import bomb
+from tests.jobs import job_of
 from tests.tracks import COUNT, QUICK, QUICK_FLAGS, rows_of, solve_to, write_clip
 from warp_kernels.styles import STYLES
 
@@ -85,23 +86,19 @@ def test_blobs_are_no_larger_than_they_are_said_to_be() -> None:
     assert most < 1 << 20
 
 
-def test_jobs_survive_as_plain_values() -> None:
-    """Options of all depths and kinds, members of registries and arrays among them."""
-    job = Job(
+def test_options_survive_as_plain_values() -> None:
+    """Of all depths and kinds, members of registries and arrays among them."""
+    options = SolveOptions(
         Path("in.mp4"),
-        Path("out.mp4"),
         frame_range=FrameRange(1, 9, 2, Fraction(1, 3)),
         layout=Importance(importance_map=np.arange(6.0).reshape(2, 3), even_share=0.25),
         flow=FLOWS["none"](),
         triangulate=QUICK,
-        styles=tuple(style() for style in STYLES.values()),
-        output_size=(30, 20),
-        track=Path("a.mtrk"),
     )
-    back = from_plain(Job, json.loads(json.dumps(to_plain(job))))
-    np.testing.assert_array_equal(back.layout.importance_map, job.layout.importance_map)
+    back = from_plain(SolveOptions, json.loads(json.dumps(to_plain(options))))
+    np.testing.assert_array_equal(back.layout.importance_map, options.layout.importance_map)
     assert back.layout.even_share == 0.25
-    assert replace(back, layout=job.layout) == job
+    assert replace(back, layout=options.layout) == options
 
 
 def test_any_frame_at_once(track: Path) -> None:
@@ -238,9 +235,8 @@ def test_same_picture_keeps_its_mesh(tmp_path: Path) -> None:
 
 def test_stills_have_tracks(tmp_path: Path, clip: Path) -> None:
     """A picture becomes a track of one frame."""
-    animate(
-        Job(clip, tmp_path / "a.png", frame_range=FrameRange(0, 0), triangulate=QUICK), Progress()
-    )
+    one = FrameRange(0, 0)
+    animate(job_of(clip, tmp_path / "a.png", frame_range=one, triangulate=QUICK), Progress())
     solve_to(tmp_path / "a.mtrk", tmp_path / "a.png")
     assert main(["render", str(tmp_path / "a.mtrk"), "-o", str(tmp_path / "b.png"), "-q"]) == 0
 

@@ -12,7 +12,6 @@ from test_track import failure
 
 from pipeline.cli import main
 from pipeline.compare.lifetimes import Lifetimes
-from pipeline.job import Job
 from pipeline.loop.animate import animate
 from pipeline.progress import Progress
 from pipeline.track import TrackReader
@@ -32,6 +31,7 @@ from stages.metrics import Motion, drift, jitter, mesh_changes, pop_energy
 from stages.metrics.locate import locate
 from stages.snapshot import Snapshot
 from tests import media_samples as samples
+from tests.jobs import job_of
 from tests.tracks import CUT, QUICK, write_clip
 from warp_kernels.energy.color_model import CONSTANT, LINEAR, ColorModel
 
@@ -224,7 +224,7 @@ def convert(clip: Path, output: Path, frames: str, **options: object) -> None:
     """Convert some frames, with a track beside the output."""
     track = output.with_suffix(".mtrk")
     wanted = FrameRange.parse(frames)
-    job = Job(clip, output, frame_range=wanted, track=track, triangulate=QUICK, **options)
+    job = job_of(clip, output, frame_range=wanted, track=track, triangulate=QUICK, **options)
     animate(job, Progress())
 
 

@@ -1,5 +1,6 @@
 """Maps of weights: what is read, what is refused, whose frame gets which, and what they change."""
 
+from contextlib import closing
 from fractions import Fraction
 from pathlib import Path
 
@@ -9,7 +10,6 @@ from scipy.ndimage import gaussian_filter
 
 import stages.triangulate
 from pipeline.cli import main
-from pipeline.job import Job
 from pipeline.loop.animate import animate
 from pipeline.progress import Progress
 from stages.frame import Frame
@@ -18,6 +18,7 @@ from stages.media import FrameRange, open_decoder
 from stages.topology.refine import RefineOptions
 from stages.triangulate import TriangulateOptions
 from tests import media_samples as samples
+from tests.jobs import job_of
 from tests.kernel_samples import frame_of
 from warp_kernels.energy.workspace import Workspace
 from warp_kernels.errors import MediaError
@@ -71,13 +72,14 @@ def source_frames(*numbers: int) -> list[Frame]:
 
 def read_still(path: Path) -> np.ndarray:
     """The weights that a still gives, [H, W] uint8."""
-    (frame,) = WeightMap(str(path), SIZE, FrameRange()).beside(source_frames(0))
-    return frame.weights
+    (frame,) = source_frames(0)
+    return WeightMap(str(path), SIZE, FrameRange()).weighed(frame).weights
 
 
 def read_numbers(path: Path, frame_range: FrameRange, *numbers: int) -> list[int]:
     """Weight of the first pixel for each frame of the source."""
-    frames = WeightMap(str(path), SIZE, frame_range).beside(source_frames(*numbers))
+    with closing(WeightMap(str(path), SIZE, frame_range)) as weights:
+        frames = [weights.weighed(frame) for frame in source_frames(*numbers)]
     return [int(frame.weights[0, 0]) for frame in frames]
 
 
@@ -98,7 +100,7 @@ def test_still_gives_its_greys_to_every_frame(tmp_path: Path) -> None:
     """Grey is weight, black is one, and all frames share one array."""
     path = samples.write_still(tmp_path / "w.png", ramp())
     np.testing.assert_array_equal(read_still(path), np.maximum(ramp()[..., 0], 1))
-    frames = list(WeightMap(str(path), SIZE, FrameRange()).beside(source_frames(3, 4, 9)))
+    frames = list(map(WeightMap(str(path), SIZE, FrameRange()).weighed, source_frames(3, 4, 9)))
     assert [frame.index for frame in frames] == [3, 4, 9]
     assert frames[0].weights is frames[2].weights
     assert frames[0].weights.min() == 1
@@ -125,7 +127,7 @@ def test_transparent_parts_count_least(tmp_path: Path) -> None:
     pixels[:, 10:20, 3], pixels[:, 20:, 3] = 128, 0
     path = samples.write_still(tmp_path / "w.png", pixels, "rgba")
     weights = WeightMap(str(path), SIZE, FrameRange())
-    (frame,) = weights.beside(source_frames(0))
+    (frame,) = map(weights.weighed, source_frames(0))
     assert frame.weights[0, [0, 15, 40]].tolist() == [255, 128, 1]
     assert any("over black" in note for note in weights.notes)
 
@@ -144,7 +146,8 @@ def test_compressed_grey_is_grey(tmp_path: Path) -> None:
     """Strong compression of a grey clip, stored as brightness and colour."""
     pictures = [np.roll(ramp(), 5 * n, axis=1) for n in range(3)]
     path = samples.write_video(tmp_path / "w.mp4", pictures, options={"crf": "35"})
-    frames = list(WeightMap(str(path), SIZE, FrameRange()).beside(source_frames(0, 1, 2)))
+    with closing(WeightMap(str(path), SIZE, FrameRange())) as weights:
+        frames = list(map(weights.weighed, source_frames(0, 1, 2)))
     for frame, picture in zip(frames, pictures, strict=True):
         assert np.abs(frame.weights.astype(int) - picture[..., 0]).mean() < 12
 
@@ -178,7 +181,9 @@ def test_black_is_refused_or_told(tmp_path: Path) -> None:
     for values, told in (([0, 0, 7], 0), ([0, 0, 0], 1)):
         path = write_levels(tmp_path / "w.mkv", values)
         weights = WeightMap(str(path), SIZE, FrameRange())
-        assert len(list(weights.beside(source_frames(0, 1, 2)))) == 3
+        for frame in source_frames(0, 1, 2):
+            weights.weighed(frame)
+        weights.close()
         assert len(weights.warnings) == told
 
 
@@ -257,10 +262,10 @@ def test_mistakes_are_one_line(
 def test_weights_go_where_vertices_move(workspaces, tmp_path: Path) -> None:
     """Frame by frame to the workspace that is optimised; colours are fitted without them."""
     source = samples.write_video(tmp_path / "in.mp4", [samples.picture(*SIZE, n) for n in range(6)])
-    job = Job(
+    job = job_of(
         source,
         tmp_path / "out.mp4",
-        FrameRange(1, 5, 2),
+        frame_range=FrameRange(1, 5, 2),
         triangulate=QUICK,
         styles=(STYLES["gradient"](),),
         weights=str(write_stills(tmp_path, range(6))),
@@ -276,7 +281,7 @@ def test_weights_go_where_vertices_move(workspaces, tmp_path: Path) -> None:
 def test_no_map_asks_for_no_weights(workspaces, tmp_path: Path) -> None:
     """Without the option, and without a face, everything is as it was."""
     source = samples.write_still(tmp_path / "in.png", samples.picture(*SIZE))
-    animate(Job(source, tmp_path / "out.png", triangulate=QUICK), Progress())
+    animate(job_of(source, tmp_path / "out.png", triangulate=QUICK), Progress())
     (workspace,) = workspaces
     assert not workspace.weighted
     assert workspace.loaded == [None]
@@ -289,9 +294,11 @@ def test_told_error_is_that_of_all_pixels(tmp_path: Path) -> None:
     half = np.full_like(picture, 10)
     half[:, :80] = 255
     weights = str(samples.write_still(tmp_path / "map.png", half))
-    job = Job(source, tmp_path / "out.png", triangulate=QUICK, weights=weights)
+    job = job_of(source, tmp_path / "out.png", triangulate=QUICK, weights=weights)
     told = animate(job, Progress()).mean_rmse
-    assert told == pytest.approx(np.sqrt((halves_rmse(picture, job.output) ** 2).mean()), rel=0.1)
+    assert told == pytest.approx(
+        np.sqrt((halves_rmse(picture, job.output.path) ** 2).mean()), rel=0.1
+    )
 
 
 @pytest.mark.parametrize("wrong", [np.ones((3, 3), np.uint8), np.ones((32, 48), np.float32)])
@@ -326,7 +333,7 @@ def test_white_half_is_approximated_better(style: str, tmp_path: Path) -> None:
     errors = {}
     for name, weights in maps.items():
         wanted = TriangulateOptions(iterations=120, refine=RefineOptions(triangles=200))
-        job = Job(
+        job = job_of(
             source,
             tmp_path / f"{name}.png",
             triangulate=wanted,
@@ -334,7 +341,7 @@ def test_white_half_is_approximated_better(style: str, tmp_path: Path) -> None:
             weights=weights and str(weights),
         )
         animate(job, Progress())
-        errors[name] = halves_rmse(picture, job.output)
+        errors[name] = halves_rmse(picture, job.output.path)
     assert errors["even"][0] == pytest.approx(errors["even"][1], rel=0.1)
     assert errors["left"][0] < 0.9 * errors["even"][0]
     assert errors["left"][1] > errors["even"][1]
@@ -345,7 +352,7 @@ def test_white_map_changes_nothing_but_rounding(tmp_path: Path) -> None:
     pictures = [np.roll(texture(), n, axis=1) for n in range(3)]
     source = samples.write_video(tmp_path / "in.mp4", pictures, options={"crf": "10"})
     white = samples.write_still(tmp_path / "white.png", level(255, (160, 120)))
-    jobs = [Job(source, tmp_path / f"{w is None}.mp4", triangulate=QUICK, weights=w)
+    jobs = [job_of(source, tmp_path / f"{w is None}.mp4", triangulate=QUICK, weights=w)
             for w in (None, str(white))]  # fmt: skip
     even, weighted = (animate(job, Progress()).mean_rmse for job in jobs)
     assert weighted == pytest.approx(even, rel=0.05)

@@ -2,11 +2,9 @@
 
 import sqlite3
 from contextlib import closing
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from pipeline.job import Job
 from pipeline.loop.animate import Animated, solve
 from pipeline.progress import Progress
 from pipeline.track.schema import TABLES
@@ -14,6 +12,7 @@ from stages.media import FrameRange
 from stages.topology.refine import RefineOptions
 from stages.triangulate import TriangulateOptions
 from tests import media_samples as samples
+from tests.jobs import job_of
 
 CUT, COUNT = 6, 12
 """First frame of the second shot, and number of frames."""
@@ -32,8 +31,9 @@ def solve_to(
     track: Path, clip: Path, frames: str = "0-", progress: Progress | None = None, **options: Any
 ) -> Animated:
     """Solve a range of a clip to a track."""
-    job = Job(clip, track, track=track, frame_range=FrameRange.parse(frames), triangulate=QUICK)
-    return solve(replace(job, **options), progress or Progress())
+    wanted = {"frame_range": FrameRange.parse(frames), "triangulate": QUICK, **options}
+    job = job_of(clip, track=track, **wanted)
+    return solve(job.solve, job.output, job.run, progress or Progress())
 
 
 def rows_of(track: Path) -> dict[str, list[tuple]]:

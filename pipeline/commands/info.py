@@ -60,7 +60,7 @@ def _facts(track: TrackReader) -> dict[str, object]:
         "source": to_plain(header.source),
         "info": header.info.as_dict(),
         "options": dict(header.options),
-        "focus": spelled(header.job.foci),
+        "focus": spelled(header.solve.foci),
         "frames": [dataclasses.asdict(row) for row in track.rows],
     }
 
@@ -80,7 +80,7 @@ def _track_rows(track: TrackReader) -> list[tuple[str, str]]:
         ("frames", ends),
         ("shots", f"{len(shots)}, from frames {starts}" if shots else "none"),
         ("colours", header.model.name),
-        ("focus", spelled(header.job.foci)),
+        ("focus", spelled(header.solve.foci)),
     ]
     if rows:
         counts = [row.triangle_count for row in rows]

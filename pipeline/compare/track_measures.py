@@ -70,7 +70,7 @@ class TrackMeter:
         self._source = source
         track.header.source.check(source)
         self._rows = {row.frame: row for row in track.rows}
-        self._is_linked = not track.header.job.independent
+        self._is_linked = not track.header.solve.independent
         self._before: Snapshot | None = None
         self._shot: int | None = None
         self._drift: Drift | None = None

@@ -5,7 +5,8 @@ from contextlib import ExitStack, contextmanager
 from functools import partial
 from typing import Any, Unpack, cast
 
-from pipeline.library.arrays import job_without_files, solved_arrays, told
+from pipeline.envelope import Solved
+from pipeline.library.arrays import options_of_arrays, solved_arrays, told
 from pipeline.library.device import opened_device
 from pipeline.library.given import given_values
 from pipeline.library.keywords import AnimatorKeywords
@@ -14,7 +15,7 @@ from pipeline.library.pushed import Pushed
 from pipeline.library.signature import with_keywords
 from pipeline.library.triangulation import Triangulation
 from pipeline.library.wording import worded
-from pipeline.loop.animate import Solved, triangulator_of
+from pipeline.loop.animate import triangulator_of
 from stages.frame import Frame
 from warp_kernels.errors import OptionError
 from warp_kernels.raster import MAX_SIDE
@@ -46,18 +47,19 @@ class Animator:
             MediaError: If a file that an option names cannot be read.
         """
         self._size = _checked(size)
-        self._job = job_without_files("Animator", options)
+        self._options, self._run = options_of_arrays("Animator", options)
         self._count = 0
         self._frames: dict[int, Frame] = {}
         self._line: Pushed[Frame, Solved] | None = None
         self._is_closed = False
         self._stack = ExitStack()
         with ExitStack() as failing:
-            device = opened_device(self._job.device, self._job.threads)
-            triangulator = triangulator_of(self._job, self._size, failing.enter_context(device))
+            device = failing.enter_context(opened_device(self._run.device, self._run.threads))
+            wanted = self._options
+            triangulator = triangulator_of(wanted, self._size, device, wanted.model)
             info = info_of(self._size, "video")
             self._solve = partial(
-                solved_arrays, job=self._job, triangulator=triangulator, info=info
+                solved_arrays, options=wanted, triangulator=triangulator, info=info
             )
             self._solve(iter(()))  # a list of cuts or a map of weights that cannot be read
             self._stack = failing.pop_all()
@@ -142,7 +144,12 @@ class Animator:
     def _told(self, ready: list[Solved]) -> list[Triangulation]:
         """What the caller sees of frames."""
         return [
-            told(solved, self._frames.pop(solved.snapshot.frame_index), self._job)
+            told(
+                solved,
+                self._frames.pop(solved.snapshot.frame_index),
+                self._options,
+                self._run,
+            )
             for solved in ready
         ]
 

@@ -3,20 +3,25 @@
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from pipeline.job import Job
+from pipeline.envelope import Solved
 from pipeline.library.given import given_values
 from pipeline.library.triangulation import Origin, Triangulation
-from pipeline.loop.animate import Solved, prepared, solved_frames
+from pipeline.loop.animate import prepared, solved_frames
 from pipeline.loop.attention import Attention
-from pipeline.options.build import build_job
+from pipeline.options.build import build_run, build_solve
+from pipeline.options.run import Run
+from pipeline.options.solve_options import SolveOptions
 from stages.frame import Frame
 from stages.masks.weight_maps import WeightMap
 from stages.media import MediaInfo
 from stages.triangulate import Triangulator
 
+ARRAYS = "arrays"
+"""In place of a source's name: frames come from a program."""
 
-def job_without_files(function: str, options: Mapping[str, Any]) -> Job:
-    """The job that a call describes.
+
+def options_of_arrays(function: str, options: Mapping[str, Any]) -> tuple[SolveOptions, Run]:
+    """How a call wants its arrays solved.
 
     Args:
         function: What was called.
@@ -25,43 +30,45 @@ def job_without_files(function: str, options: Mapping[str, Any]) -> Job:
     Raises:
         OptionError: If there is no such option, or its value is impossible.
     """
-    return build_job({"source": "", "output": "", **given_values(function, options)})
+    given = {"source": ARRAYS, **given_values(function, options)}
+    return build_solve(given), build_run(given)
 
 
 def solved_arrays(
-    frames: Iterator[Frame], job: Job, triangulator: Triangulator, info: MediaInfo
+    frames: Iterator[Frame], options: SolveOptions, triangulator: Triangulator, info: MediaInfo
 ) -> Iterator[Solved]:
     """Solve frames as those of a clip; files that options name are looked at before the first.
 
     Args:
         frames: The frames, in order.
-        job: Says how they are solved.
-        triangulator: Made for the job.
+        options: Say how they are solved.
+        triangulator: Made for them.
         info: Their size and kind.
 
     Raises:
         MediaError: If a file that an option names cannot be read.
     """
     size = (info.width, info.height)
-    attention = Attention(job.foci, info, 1, job.triangulate.refine.triangles)
-    maps = [WeightMap(str(m.file), size, job.frame_range, m.strength) for m in job.maps]
-    found = prepared(frames, info, attention, maps, job, None, [])
-    return solved_frames(found, triangulator, job, None)
+    attention = Attention(options.foci, info, 1, options.triangulate.refine.triangles)
+    maps = [WeightMap(str(m.file), size, options.frame_range, m.strength) for m in options.maps]
+    found = prepared(frames, info, attention, maps, options, None, [])
+    return solved_frames(found, triangulator, options, None)
 
 
-def told(solved: Solved, frame: Frame, job: Job) -> Triangulation:
+def told(solved: Solved, frame: Frame, options: SolveOptions, run: Run) -> Triangulation:
     """What the caller sees of a frame.
 
     Args:
         solved: What it became.
         frame: The frame.
-        job: Says how it was solved.
+        options: Say how it was solved.
+        run: Says where.
     """
     origin = Origin(
-        color=job.triangulate.color,
+        color=options.triangulate.color,
         shot=solved.shot,
         frame=frame,
-        device=job.device,
-        threads=job.threads,
+        device=run.device,
+        threads=run.threads,
     )
     return Triangulation(solved.snapshot, origin)

@@ -5,24 +5,26 @@ from typing import Any
 
 import numpy as np
 
-from pipeline.job import Job
 from pipeline.library.device import opened_device
-from pipeline.loop.animate import triangulator_of
-from pipeline.options.build import build_job
+from pipeline.options.build import build_look, build_run
 from stages.frame import Frame
 from stages.render import Renderer
 from stages.snapshot import Snapshot
-from warp_kernels.device.device import Device
+from stages.triangulate import TriangulateOptions, Triangulator
+from warp_kernels.energy.color_model import ColorModel
 from warp_kernels.errors import OptionError
 
 
-def drawn(snapshot: Snapshot, frame: Frame | None, values: Mapping[str, Any]) -> np.ndarray:
+def drawn(
+    snapshot: Snapshot, frame: Frame | None, model: ColorModel, values: Mapping[str, Any]
+) -> np.ndarray:
     """Draw a snapshot.
 
     Args:
         snapshot: The triangles and their colours.
         frame: The picture, or None if it was not kept.
-        values: Options of the look and the colour model, by field name.
+        model: The colour model that was optimised.
+        values: Options of the look and the run, by field name.
 
     Returns:
         Code values, [rows, columns, 3] or [rows, columns, 4] uint8.
@@ -30,23 +32,19 @@ def drawn(snapshot: Snapshot, frame: Frame | None, values: Mapping[str, Any]) ->
     Raises:
         OptionError: If a value is impossible, or the picture is needed and not there.
     """
-    job = build_job({"source": "", "output": "", **values})
+    look, run = build_look(values), build_run(values)
+    styles, fitted = look.shown_styles(model), look.fitted(model)
     size = (snapshot.mesh.width, snapshot.mesh.height)
-    output = job.size_for(size)
-    is_short = job.fitted.degree > snapshot.model.degree
-    if frame is None and (is_short or job.needs_source):
-        names = ", ".join(type(style).__name__.lower() for style in job.shown_styles)
+    output = look.size_for(size)
+    is_short = fitted.degree > snapshot.model.degree
+    if frame is None and (is_short or look.needs_source):
+        names = ", ".join(type(style).__name__.lower() for style in styles)
         raise OptionError(
             f"styles: {names} need the picture, and a track holds none; draw the track by render"
         )
-    with opened_device(job.device, job.threads) as device:
-        if frame is not None and job.fitted != snapshot.model:
-            snapshot = _fitted(snapshot, frame, job, device)
-        renderer = Renderer(device, size, output, job.shown_styles)
+    with opened_device(run.device, run.threads) as device:
+        if frame is not None and fitted != snapshot.model:
+            options = TriangulateOptions(color=model.name)
+            snapshot = Triangulator(device, size, options, fitted).fit(frame, snapshot.mesh)
+        renderer = Renderer(device, size, output, styles)
         return renderer.render(snapshot, source=None if frame is None else frame.pixels)
-
-
-def _fitted(snapshot: Snapshot, frame: Frame, job: Job, device: Device) -> Snapshot:
-    """The same triangles in the colours that a look needs."""
-    triangulator = triangulator_of(job, (frame.width, frame.height), device)
-    return triangulator.fit(frame, snapshot.mesh)

@@ -45,15 +45,15 @@ def animate(
     Raises:
         TrimotionError: One of its kinds; the message is one line that ends with a remedy.
     """
-    job = _job("animate", source, output, options)
-    with progress_for(progress) as told, explained_loss(job.jobs):
-        if job.jobs > 1 or job.followed:
+    job = _job("animate", source, options, output=file_name("output", output))
+    with progress_for(progress) as told, explained_loss(job.run.jobs):
+        if job.run.jobs > 1 or job.look.followed:
             from pipeline.loop.processes import animate_in_parts
 
-            return _result(animate_in_parts(job, told), job.output, told)
+            return _result(animate_in_parts(job, told), job.output.path, told)
         from pipeline.loop.animate import animate as animate_at_once
 
-        return _result(animate_at_once(job, told), job.output, told)
+        return _result(animate_at_once(job, told), job.output.path, told)
 
 
 @with_keywords("solve")
@@ -74,15 +74,16 @@ def solve(
     """
     # Looks, which a preset may hold, do not belong to a track.
     fixed = {"track": file_name("output", output), "styles": (), "regions": ()}
-    job = _job("solve", source, output, options, **fixed)
-    with progress_for(progress) as told, explained_loss(job.jobs):
-        if job.jobs > 1:
+    job = _job("solve", source, options, **fixed)
+    parts = job.solve, job.output, job.run
+    with progress_for(progress) as told, explained_loss(job.run.jobs):
+        if job.run.jobs > 1:
             from pipeline.loop.processes import solve_in_parts
 
-            return _result(solve_in_parts(job, told), job.output, told)
+            return _result(solve_in_parts(*parts, told), job.output.track, told)
         from pipeline.loop.animate import solve as solve_at_once
 
-        return _result(solve_at_once(job, told), job.output, told)
+        return _result(solve_at_once(*parts, told), job.output.track, told)
 
 
 @with_keywords("render")
@@ -108,15 +109,18 @@ def render(
         TrimotionError: One of its kinds; the message is one line that ends with a remedy.
     """
     moved = None if source is None else Path(file_name("source", source))
-    look = _job("render", file_name("track", track), output, options, track=None)
+    path, target = Path(file_name("track", track)), file_name("output", output)
+    given = given_values("render", options)
     from pipeline.look.render_job import render_job
     from pipeline.loop.animate import render as draw
+    from pipeline.options.build import build_render
     from pipeline.track import TrackReader
 
-    with TrackReader(look.source) as reader, progress_for(progress) as told:
-        made = render_job(look, reader, moved)
+    wanted = build_render({**given, "output": target}, path)
+    with TrackReader(path) as reader, progress_for(progress) as told:
+        made = render_job(reader, *wanted, moved)
         drawn = draw(made.job, reader, made.info, told)
-        return _result(drawn, look.output, told, made.notes, made.warnings)
+        return _result(drawn, made.job.output.path, told, made.notes, made.warnings)
 
 
 @with_keywords("measure")
@@ -151,34 +155,32 @@ def measure(
         return compare(*names, wanted, held, told)
 
 
-def _job(
-    function: str, source: Name, output: Name, options: Mapping[str, Any], **fixed: object
-) -> "Job":
+def _job(function: str, source: Name, options: Mapping[str, Any], **fixed: object) -> "Job":
     """The job that a call describes.
 
     Args:
         function: What was called.
         source: Its source.
-        output: Its output.
         options: Its keywords.
         fixed: What the function decides itself.
     """
-    names = {"source": file_name("source", source), "output": file_name("output", output)}
+    fixed = {"source": file_name("source", source), **fixed}
     values = given_values(function, options)
     check_processes(cast(int, values.get("jobs", 1)))
     from pipeline.options.build import build_job
 
-    return build_job({**values, **names, **fixed})
+    return build_job({**values, **fixed})
 
 
 def _result(
     animated: "Animated",
-    output: Path,
+    output: Path | None,
     told: Progress,
     notes: tuple[str, ...] = (),
     warnings: tuple[str, ...] = (),
 ) -> Result:
     """What came of a run, told to those who want to be."""
+    assert output is not None
     result = Result(
         output=output,
         frames=animated.frames,

@@ -10,7 +10,7 @@ import numpy as np
 
 from pipeline.library.keywords import options_of
 from pipeline.track import Header
-from pipeline.track.agreement import FREE, FREE_GROUPS
+from pipeline.track.agreement import FREE
 
 
 def solved_with(header: Header) -> Mapping[str, Any]:
@@ -19,12 +19,11 @@ def solved_with(header: Header) -> Mapping[str, Any]:
     Args:
         header: The track's.
     """
-    values = dict(_flat(header.job))
+    values = dict(_flat(header.solve))
     values["cuts"] = header.options["cuts"]
     told = {"frames": str(header.frame_range)}
     for keyword, option in options_of("solve").items():
-        decides = option.group not in FREE_GROUPS and option.dest not in FREE
-        if decides and option.dest in values:
+        if option.dest in values and option.dest not in FREE:
             registry = option.declared.metadata.get("registry")
             told[keyword] = _plain(values[option.dest], registry)
     return told
@@ -46,7 +45,7 @@ def _plain(value: Any, registry: str | None) -> Any:
     """A value as it is given.
 
     Args:
-        value: What the job holds.
+        value: What the options hold.
         registry: The registry whose members it names, as module:NAME, or None.
     """
     if isinstance(value, tuple):

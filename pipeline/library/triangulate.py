@@ -3,7 +3,7 @@
 from dataclasses import replace
 from typing import Any, Unpack
 
-from pipeline.library.arrays import job_without_files, solved_arrays, told
+from pipeline.library.arrays import options_of_arrays, solved_arrays, told
 from pipeline.library.device import opened_device
 from pipeline.library.keywords import PictureKeywords
 from pipeline.library.pixels import frame_of, info_of, weights_of
@@ -34,8 +34,8 @@ def triangulate(pixels: Any, **options: Unpack[PictureKeywords]) -> Triangulatio
         frame = replace(frame, weights=weights_of(named["weights"], size))
         del named["weights"]
         named.setdefault("focus", "none")
-    job = job_without_files("triangulate", named)
-    with opened_device(job.device, job.threads) as device:
-        triangulator = triangulator_of(job, size, device)
-        (solved,) = solved_arrays(iter([frame]), job, triangulator, info_of(size, "image"))
-        return told(solved, frame, job)
+    wanted, run = options_of_arrays("triangulate", named)
+    with opened_device(run.device, run.threads) as device:
+        triangulator = triangulator_of(wanted, size, device, wanted.model)
+        (solved,) = solved_arrays(iter([frame]), wanted, triangulator, info_of(size, "image"))
+        return told(solved, frame, wanted, run)

@@ -14,6 +14,7 @@ from stages.frame import Frame
 from stages.look.paint import paint_of
 from stages.media.writing.still_writer import encode_still
 from stages.snapshot import Snapshot
+from warp_kernels.energy.color_model import COLOR_MODELS
 
 
 @dataclass(frozen=True)
@@ -131,8 +132,8 @@ class Triangulation:
         options: dict[str, Any] = {"styles": styles, "scale": scale, "size": size}
         options["device"] = origin.device if device is None else device
         options["threads"] = origin.threads if threads is None else threads
-        values = {**given_values("draw", options), "color": origin.color}
-        return drawn(self._snapshot, origin.frame, values)
+        model = COLOR_MODELS[origin.color]
+        return drawn(self._snapshot, origin.frame, model, given_values("draw", options))
 
     def _repr_png_(self) -> bytes:
         """What a notebook shows."""

@@ -3,8 +3,8 @@
 from contextlib import ExitStack
 from types import TracebackType
 
+from pipeline.envelope import Solved
 from pipeline.job import Job
-from pipeline.look.drawn_frame import Take
 from pipeline.look.region_masks import own_mask
 from pipeline.look.smooth import Smoother
 from stages.look.fading import Fading
@@ -31,16 +31,19 @@ class Drawing:
 
     def __init__(self, job: Job, info: MediaInfo, device: Device) -> None:
         picture = (info.width, info.height)
-        size = job.size_for(picture)
-        masked = tuple(region.style for region in job.regions)
-        followed = tuple(i for i, region in enumerate(job.regions) if region.frames)
-        self._renderer = Renderer(device, picture, size, job.shown_styles, masked, followed)
-        self._masks = open_masks(job.unfollowed, picture)
-        self._encoder = open_encoder(job.output, info, size, job.encode, job.frame_range)
+        options, look, output = job.solve, job.look, job.output
+        assert output.path is not None
+        size = look.size_for(picture)
+        masked = tuple(region.style for region in look.regions)
+        followed = tuple(i for i, region in enumerate(look.regions) if region.frames)
+        styles = look.shown_styles(options.model)
+        self._renderer = Renderer(device, picture, size, styles, masked, followed)
+        self._masks = open_masks(look.unfollowed, picture)
+        self._encoder = open_encoder(output.path, info, size, output.encode, options.frame_range)
         # Where every frame starts anew, triangles of the same number have nothing in common.
-        self._blend = 0 if job.independent else job.blend
-        self._smoother = Smoother(0.0 if job.independent else job.smooth)
-        self._lays_strokes = job.lays_strokes
+        self._blend = 0 if options.independent else look.blend
+        self._smoother = Smoother(0.0 if options.independent else look.smooth)
+        self._lays_strokes = look.lays_strokes and not options.independent
         self._fading: Fading | None = None
         self._strokes: Strokes | None = None
         self._shot: int | None = None
@@ -50,25 +53,25 @@ class Drawing:
         """Choices that were made, one sentence each; complete after the block."""
         return self._encoder.notes
 
-    def draw(self, take: Take) -> None:
+    def draw(self, solved: Solved) -> None:
         """Draw and encode a frame, or an earlier one that has been waiting for it."""
-        for smooth in self._smoother.add(take):
+        for smooth in self._smoother.add(solved):
             self._draw(smooth)
 
-    def _draw(self, take: Take) -> None:
-        self._follow(take)
-        if take.is_shown:
-            snapshot = take.snapshot
+    def _draw(self, solved: Solved) -> None:
+        self._follow(solved)
+        if solved.is_shown:
+            snapshot = solved.snapshot
             masks = [mask.at(snapshot.frame_index) for mask in self._masks]
             pixels = self._renderer.render(
-                snapshot, self._fading, take.source, masks, take.shares, self._lay
+                snapshot, self._fading, solved.source, masks, solved.shares, self._lay
             )
             self._encoder.write(pixels, snapshot.pts, snapshot.time_base, snapshot.frame_index)
 
-    def _follow(self, take: Take) -> None:
+    def _follow(self, solved: Solved) -> None:
         """Take on what lies on a frame from the one before, and what lingers of it."""
-        begins, snapshot = take.shot != self._shot, take.snapshot
-        self._shot = take.shot
+        begins, snapshot = solved.shot != self._shot, solved.snapshot
+        self._shot = solved.shot
         if self._lays_strokes:
             known = None if begins else self._strokes
             mesh = snapshot.mesh
@@ -76,9 +79,9 @@ class Drawing:
         if self._blend:
             fading = None if begins else self._fading
             if fading is None:
-                self._fading = Fading.begin(snapshot, self._blend, take.shares, self._lay)
+                self._fading = Fading.begin(snapshot, self._blend, solved.shares, self._lay)
             else:
-                self._fading = fading.followed_by(snapshot, take.shares, self._lay)
+                self._fading = fading.followed_by(snapshot, solved.shares, self._lay)
 
     @property
     def _lay(self) -> Lay | None:
@@ -102,8 +105,8 @@ class Drawing:
         with ExitStack() as closing:
             closing.push(self._encoder)  # a failure of the last frames leaves nothing either
             closing.callback(self._close_masks)
-            for take in self._smoother.rest():
-                self._draw(take)
+            for solved in self._smoother.rest():
+                self._draw(solved)
 
     def _close_masks(self) -> None:
         for mask in self._masks:
@@ -123,10 +126,11 @@ def check_drawing(job: Job, info: MediaInfo) -> None:
         OutputError: If the output cannot be written.
     """
     picture = (info.width, info.height)
-    for mask in open_masks(job.unfollowed, picture):
+    for mask in open_masks(job.look.unfollowed, picture):
         mask.close()
-    for region in job.followed:
+    for region in job.look.followed:
         for frame in region.frames:
             own_mask(region, frame, picture)
-    size = job.size_for(picture)
-    check_output(job.output, info, size, job.encode, job.frame_range)
+    assert job.output.path is not None
+    size = job.look.size_for(picture)
+    check_output(job.output.path, info, size, job.output.encode, job.solve.frame_range)

@@ -4,8 +4,9 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from pipeline.job import Job
 from pipeline.look.region_masks import check_dependent, own_mask
+from pipeline.options.look import Look
+from pipeline.options.solve_options import SolveOptions
 from pipeline.track import FrameRow, TrackReader
 from stages.masks.regions import Region
 from stages.motion.inherit_regions import inherited, under_mask
@@ -16,31 +17,32 @@ MEMBER = 255
 
 
 def followed_shares(
-    job: Job, track: TrackReader, rows: Sequence[FrameRow]
+    options: SolveOptions, look: Look, track: TrackReader, rows: Sequence[FrameRow]
 ) -> Iterator[np.ndarray | None]:
-    """Which triangles the followed regions of a job hold.
+    """Which triangles the followed regions of a look hold.
 
     They are followed through all frames between the one that the mask was drawn for and the one
     that is asked for: a part of a track looks as it does in the whole.
 
     Args:
-        job: Has the regions.
+        options: Say how the frames were solved.
+        look: Has the regions.
         track: The whole track.
         rows: Frames of it, in order.
 
     Yields:
-        For every frame `Paint.shares` [T, R] uint8, or None if the job follows no region.
+        For every frame `Paint.shares` [T, R] uint8, or None if the look follows no region.
 
     Raises:
         OptionError: If the track has no such frame, or its frames have nothing in common.
         MediaError: If a mask cannot be read.
         TrackError: If the track is damaged.
     """
-    regions = job.followed
+    regions = look.followed
     if not regions:
         yield from (None for _ in rows)
         return
-    members = [_members(region, job, track, rows) for region in regions]
+    members = [_members(region, options, track, rows) for region in regions]
     for row in rows:
         columns = [of_frame.get(row.frame) for of_frame in members]
         blank = np.zeros(row.triangle_count, dtype=bool)
@@ -49,10 +51,10 @@ def followed_shares(
 
 
 def _members(
-    region: Region, job: Job, track: TrackReader, rows: Sequence[FrameRow]
+    region: Region, options: SolveOptions, track: TrackReader, rows: Sequence[FrameRow]
 ) -> dict[int, np.ndarray]:
     """The triangles of a region, by frame: what is carried there from the nearest of its own."""
-    check_dependent(region, job)
+    check_dependent(region, options)
     frames = [row.frame for row in track.rows]
     members: dict[int, np.ndarray] = {}
     for own, asked in _turns(region, track, rows).items():

@@ -4,8 +4,12 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from pipeline.job import Job
+from pipeline.options.look import Look
+from pipeline.options.output import Output
+from pipeline.options.run import Run
 from pipeline.track import TrackReader
 from stages.media import FrameRange, MediaInfo, input_pattern
+from warp_kernels.energy.color_model import ColorModel
 from warp_kernels.errors import MediaError, OptionError, TrackError
 
 
@@ -14,7 +18,7 @@ class RenderJob:
     """How a track is drawn."""
 
     job: Job
-    """The look that is wanted, with the options that the track was made with."""
+    """What was asked for, with the options that the track was made with."""
     info: MediaInfo
     """The source; without sound if it cannot be read any more."""
     notes: tuple[str, ...]
@@ -23,12 +27,22 @@ class RenderJob:
     """What the track lacks, one sentence each."""
 
 
-def render_job(look: Job, track: TrackReader, source: Path | None) -> RenderJob:
+def render_job(
+    track: TrackReader,
+    wanted: FrameRange,
+    look: Look,
+    output: Output,
+    run: Run,
+    source: Path | None,
+) -> RenderJob:
     """Combine a look with a track.
 
     Args:
-        look: Says how the output looks and how it is written; the rest is ignored.
         track: The track.
+        wanted: The frames that are asked for.
+        look: How they are drawn.
+        output: Where and how they are written.
+        run: What the work may use.
         source: Where the source is now, or None for where it was.
 
     Raises:
@@ -37,28 +51,23 @@ def render_job(look: Job, track: TrackReader, source: Path | None) -> RenderJob:
         TrackError: If the source is named, or needed, and another one.
     """
     header = track.header
-    job = replace(header.job, output=look.output, encode=look.encode, styles=look.styles)
-    job = replace(job, regions=look.regions)
-    job = replace(job, output_size=None, scale=None, track=None, resume=False, jobs=1)
-    job = replace(job, output_size=look.output_size, scale=look.scale)
-    job = replace(job, blend=look.blend, smooth=look.smooth)
-    job = replace(job, device=look.device, threads=look.threads)
-    job = replace(job, frame_range=_range(look.frame_range, track))
+    options = replace(header.solve, frame_range=_range(wanted, track))
     last = track.rows[-1].frame
-    found, problem = _find(source, track, _needs(job, track))
+    found, problem = _find(source, track, _needs(look, options.model, header.model))
     info = header.info
     notes = []
-    if look.frame_range.last is not None and look.frame_range.last > last:
-        notes.append(f"frames {look.frame_range}: the track ends with frame {last}")
+    if wanted.last is not None and wanted.last > last:
+        notes.append(f"frames {wanted}: the track ends with frame {last}")
     if found is None:
-        if info.audio_codec is not None and job.encode.audio:
+        if info.audio_codec is not None and output.encode.audio:
             notes.append(f"{problem}: the sound is left out; --source says where it is now")
         info = replace(info, audio_codec=None, audio_channels=None, audio_rate=None)
     else:
-        job, info = replace(job, source=found), replace(info, path=found)
+        options, info = replace(options, source=found), replace(info, path=found)
     warnings: tuple[str, ...] = ()
     if not header.finished:
         warnings = (f"{track.path} is unfinished: its frames end with {last}",)
+    job = Job(options, look, output, run)
     return RenderJob(job, info, tuple(notes), warnings)
 
 
@@ -78,13 +87,12 @@ def _range(wanted: FrameRange, track: TrackReader) -> FrameRange:
     return wanted
 
 
-def _needs(job: Job, track: TrackReader) -> str:
+def _needs(look: Look, optimised: ColorModel, stored: ColorModel) -> str:
     """What a look finds in the source alone; nothing if the track is enough."""
-    if job.needs_source:
+    if look.needs_source:
         return "a look that shows the source"
-    model = track.header.model
-    if job.fitted != model:
-        return f"a look that needs colours other than the track's {model.name} ones"
+    if look.fitted(optimised) != stored:
+        return f"a look that needs colours other than the track's {stored.name} ones"
     return ""
 
 

@@ -4,9 +4,9 @@ import json
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from pipeline.job import Job
 from pipeline.loop.motion import check_cuts, holds, open_around
 from pipeline.loop.shots import with_shots
+from pipeline.options.solve_options import SolveOptions
 from stages.media import FrameRange
 from warp_kernels.errors import OptionError
 
@@ -46,11 +46,11 @@ class Plan:
         return "\n".join(map(str, self.ranges))
 
 
-def plan(job: Job, parts: int | None = None) -> Plan:
+def plan(options: SolveOptions, parts: int | None = None) -> Plan:
     """Find the shots of a source and share them out.
 
     Args:
-        job: Says which frames of which source, and where cuts are.
+        options: Say which frames of which source, and where cuts are.
         parts: Most ranges that are made, as even as whole shots allow; None for one a shot.
 
     Raises:
@@ -61,20 +61,19 @@ def plan(job: Job, parts: int | None = None) -> Plan:
         raise OptionError(f"--parts {parts}: must be 1 or more")
     starts: list[int] = []
     last = -1
-    with open_around(job, None) as decoder:
-        check_cuts(job.cuts, job.source, decoder.info)
-        for shot_frame in with_shots(decoder, job.cuts):
-            frame = shot_frame.frame
-            if holds(job.frame_range, frame, decoder.info):
-                last = frame.index
-                if shot_frame.opens_shot or not starts:
+    with open_around(options, None) as decoder:
+        check_cuts(options.cuts, options.source, decoder.info)
+        for seen in with_shots(decoder, options.cuts):
+            if holds(options.frame_range, seen.frame, decoder.info):
+                last = seen.frame.index
+                if seen.opens_shot or not starts:
                     starts.append(last)
         notes = tuple(decoder.notes)
-    step = job.frame_range.step
+    step = options.frame_range.step
     ends = [*(start - step for start in starts[1:]), last]
     shots = tuple(FrameRange(a, b, step) for a, b in zip(starts, ends, strict=True))
     ranges = shots if parts is None else _shared(shots, parts)
-    return Plan(job.source, shots, ranges, notes)
+    return Plan(options.source, shots, ranges, notes)
 
 
 def _shared(shots: tuple[FrameRange, ...], parts: int) -> tuple[FrameRange, ...]:

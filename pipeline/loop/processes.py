@@ -6,7 +6,7 @@ import shutil
 import signal
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from multiprocessing.process import BaseProcess
 from pathlib import Path
 from queue import Empty
@@ -21,6 +21,9 @@ from pipeline.look.region_masks import check_followed
 from pipeline.look.render_job import render_job
 from pipeline.loop.animate import Animated, render, solve
 from pipeline.loop.plan import plan
+from pipeline.options.output import Output
+from pipeline.options.run import Run
+from pipeline.options.solve_options import SolveOptions
 from pipeline.progress import Progress
 from pipeline.track import TrackReader, join, refuse_track
 from pipeline.track.resume import check_track_place
@@ -28,6 +31,7 @@ from pipeline.track.schema import ENDING
 from stages.media import FrameRange, probe
 from stages.media.writing.commit import PendingFile
 from warp_kernels.device.kernel_cache import settle_cache
+from warp_kernels.energy.color_model import ColorModel
 from warp_kernels.errors import OptionError, OutputError, TrimotionError
 
 PATIENCE = 0.5
@@ -65,21 +69,24 @@ def animate_in_parts(job: Job, progress: Progress) -> Animated:
     """
     begun = perf_counter()
     both = _Halves(progress)
-    refuse_track(job.source)
-    info = probe(job.source, read=job.read)
+    options, output = job.solve, job.output
+    assert output.path is not None
+    refuse_track(options.source)
+    info = probe(options.source, read=options.read)
     check_followed(job, info)
     check_drawing(job, info)
-    if job.track is None and job.resume:
+    if output.track is None and output.resume:
         raise OptionError("--resume: nothing is left to go on with; name a --track FILE.mtrk")
-    track = job.track or PendingFile(job.output).path.with_suffix(ENDING)
+    track = output.track or PendingFile(output.path).path.with_suffix(ENDING)
     try:
-        solved = solve_in_parts(replace(job, track=track), both)
+        solved = solve_in_parts(options, replace(output, track=track), job.run, both, job.fitted)
         with TrackReader(track) as reader:
-            drawn = render_job(job, reader, job.source)
+            wanted, source = options.frame_range, options.source
+            drawn = render_job(reader, wanted, job.look, output, job.run, source)
             both.second_half()
             result = render(drawn.job, reader, drawn.info, both)
     finally:
-        if job.track is None:
+        if output.track is None:
             track.unlink(missing_ok=True)
             shutil.rmtree(_folder(track), ignore_errors=True)
     return replace(
@@ -90,46 +97,65 @@ def animate_in_parts(job: Job, progress: Progress) -> Animated:
     )
 
 
-def solve_in_parts(job: Job, progress: Progress) -> Animated:
+def solve_in_parts(
+    options: SolveOptions,
+    output: Output,
+    run: Run,
+    progress: Progress,
+    fitted: ColorModel | None = None,
+) -> Animated:
     """Solve shots side by side; the track is that of one process, to the bit.
 
     Args:
-        job: What to do; `track` is what is written.
+        options: What decides the meshes.
+        output: Names the track.
+        run: What the work may use.
         progress: Told of every finished frame.
+        fitted: The colour model of the snapshots, if a look needs more than the optimised one.
 
     Raises:
         TrimotionError: As `solve` does.
     """
-    assert job.track is not None
+    assert output.track is not None
     begun = perf_counter()
-    check_track_place(job.track, job)
-    alone = replace(job, jobs=1)
-    if job.jobs == 1 or (job.resume and job.track.exists()):
-        return solve(alone, progress)  # what is resumed goes on inside a shot
-    planned = plan(job)
+    check_track_place(output.track, output)
+    alone = replace(run, jobs=1)
+    if run.jobs == 1 or (output.resume and output.track.exists()):
+        # what is resumed goes on inside a shot
+        return solve(options, output, alone, progress, fitted)
+    planned = plan(options)
     ranges = planned.ranges
     if len(ranges) == 1:
-        return solve(alone, progress)
-    folder = _made_folder(job)
+        return solve(options, output, alone, progress, fitted)
+    folder = _made_folder(output)
     settle_cache()  # once for all processes
-    crew = _Crew(job, ranges, folder, progress)
+    crew = _Crew(_Work(options, run, fitted), ranges, folder, progress)
     with crew.at_work():
         crew.wait()
-    join([_path(folder, part) for part in ranges], job.track, job.frame_range)
-    with TrackReader(job.track) as reader:
+    join([_path(folder, part) for part in ranges], output.track, options.frame_range)
+    with TrackReader(output.track) as reader:
         mean = float(np.mean([row.rmse for row in reader.rows]))
     shutil.rmtree(folder, ignore_errors=True)
     notes = list(dict.fromkeys([*planned.notes, *crew.notes]))
-    if len(ranges) < job.jobs:
-        notes.append(f"{len(ranges)} shots: so many processes, not {job.jobs}")
+    if len(ranges) < run.jobs:
+        notes.append(f"{len(ranges)} shots: so many processes, not {run.jobs}")
     return Animated(crew.done, perf_counter() - begun, mean, tuple(crew.warnings), tuple(notes))
+
+
+@dataclass(frozen=True)
+class _Work:
+    """What the processes have in common."""
+
+    options: SolveOptions
+    run: Run
+    fitted: ColorModel | None
 
 
 class _Crew:
     """Processes that take ranges from a queue and report on another."""
 
     def __init__(
-        self, job: Job, ranges: Sequence[FrameRange], folder: Path, progress: Progress
+        self, work: _Work, ranges: Sequence[FrameRange], folder: Path, progress: Progress
     ) -> None:
         self.done = 0
         """Frames finished by this run."""
@@ -148,9 +174,9 @@ class _Crew:
         longest = sorted(ranges, key=lambda part: part.first - (part.last or 0))
         for part in longest:
             self._tasks.put((part, _path(folder, part)))
-        count = min(job.jobs, len(ranges))
-        threads = job.threads or max(1, (os.cpu_count() or 1) // count)
-        mine = replace(job, threads=threads, jobs=1)
+        count = min(work.run.jobs, len(ranges))
+        threads = work.run.threads or max(1, (os.cpu_count() or 1) // count)
+        mine = replace(work, run=replace(work.run, threads=threads, jobs=1))
         self._processes: list[BaseProcess] = [
             context.Process(
                 target=_work, args=(mine, self._tasks, self._reports, os.getpid()), daemon=True
@@ -254,14 +280,16 @@ def _next_task(tasks: Any, parent: int) -> tuple[FrameRange, Path]:
             _watch(parent)
 
 
-def _work(job: Job, tasks: Any, reports: Any, parent: int) -> None:
+def _work(work: _Work, tasks: Any, reports: Any, parent: int) -> None:
     """What a process does: one range after the other, until it is ended."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C goes to all; the first process ends all
     try:
         while True:
             wanted, path = _next_task(tasks, parent)
-            part = replace(job, frame_range=wanted, track=path, output=path, resume=True)
-            done = solve(part, _Reporter(reports, parent))
+            part = replace(work.options, frame_range=wanted)
+            output = Output(track=path, resume=True)
+            reporter = _Reporter(reports, parent)
+            done = solve(part, output, work.run, reporter, work.fitted)
             reports.put(("part", done.notes, done.warnings))
     except TrimotionError as error:
         reports.put(("error", str(error), error.exit_code))
@@ -292,12 +320,12 @@ def _path(folder: Path, part: FrameRange) -> Path:
     return folder / f"{part}{ENDING}"
 
 
-def _made_folder(job: Job) -> Path:
+def _made_folder(output: Output) -> Path:
     """Make the folder of the parts, or take what an interrupted run left in it."""
-    assert job.track is not None
-    folder = _folder(job.track)
-    if folder.exists() and not job.resume:
-        if not job.encode.overwrite:
+    assert output.track is not None
+    folder = _folder(output.track)
+    if folder.exists() and not output.resume:
+        if not output.overwrite:
             raise OutputError(
                 folder, "holds parts of an interrupted job", "--resume that, or --overwrite it"
             )

@@ -1,4 +1,4 @@
-"""The options of `animate`, derived from what `Job` and the dataclasses inside it declare."""
+"""The options of `animate`, derived from what the parts of a `Job` declare."""
 
 import argparse
 from collections.abc import Callable, Iterator, Mapping
@@ -26,8 +26,16 @@ HEADINGS = {
 }
 """Groups of the help, in order, and their titles."""
 
-_GROUPS = {"Job": "run", "EncodeOptions": "output"}
+_GROUPS = {"Look": "look", "EncodeOptions": "output"}
 """Groups of dataclasses; the others belong to the triangles."""
+
+_PARTS = (
+    ("pipeline.options.run", "Run"),
+    ("pipeline.options.solve_options", "SolveOptions"),
+    ("pipeline.options.look", "Look"),
+    ("pipeline.options.output", "Output"),
+)
+"""The dataclasses that together are a job."""
 
 RANGE_FIELDS = (
     DeclaredField(
@@ -167,7 +175,7 @@ def job_options() -> tuple[Option, ...]:
     """All options that describe a job; a name that several dataclasses share is one option."""
     options = [Option(declared.name, declared.name, declared) for declared in RANGE_FIELDS]
     known = {option.dest for option in options}
-    for declared in _fields_of("pipeline.job", "Job"):
+    for declared in (field for part in _PARTS for field in _fields_of(*part)):
         if declared.name not in known:
             known.add(declared.name)
             options.append(Option(_flag_of(declared), declared.name, declared))

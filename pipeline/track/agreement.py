@@ -1,4 +1,4 @@
-"""Which options two jobs do not share, of those that decide what is solved."""
+"""Which options two tracks do not share, of those that decide what a frame becomes."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any
@@ -7,23 +7,19 @@ from pipeline.options.command_line import Option, job_options
 from pipeline.options.declared import registry_classes
 from pipeline.track.plain_values import CLASS
 
-FREE = frozenset({"source", "output", "frame_range", "device", "threads", "encode"})
-"""Fields of a job that do not change what a frame becomes; those of looks, files and processes
-do not either. The source is compared by its content."""
-FREE_GROUPS = frozenset({"look", "output", "processes"})
-"""Headings of the options that do not change what a frame becomes."""
+FREE = frozenset({"source", "frame_range"})
+"""Fields that may differ: the source is compared by its content, the range by what it joins."""
 
 
 def differing_flags(mine: Mapping[str, Any], theirs: Mapping[str, Any]) -> list[str]:
     """The options that differ, such as `--triangles 90 instead of 120`.
 
     Args:
-        mine: A job's options as plain values: what is right.
+        mine: `SolveOptions` as plain values: what is right.
         theirs: Another's.
     """
     options = {option.dest: option for option in job_options()}
-    free = {name for name, option in options.items() if option.group in FREE_GROUPS} | FREE
-    kept = [{k: v for k, v in job.items() if k not in free} for job in (mine, theirs)]
+    kept = [{k: v for k, v in job.items() if k not in FREE} for job in (mine, theirs)]
     return list(_differing(kept[0], kept[1], options))
 
 

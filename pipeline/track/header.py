@@ -9,21 +9,19 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from pipeline.job import Job
+from pipeline.options.solve_options import SolveOptions
 from pipeline.track.cuts import read_cuts
+from pipeline.track.earlier import up_to_date
 from pipeline.track.identity import SourceIdentity, identity_of
 from pipeline.track.plain_values import UnknownNameError, from_plain, to_plain
 from pipeline.version import library_versions, program_version
-from stages.focus.none import NoFocus
-from stages.media import FrameRange, MediaInfo, ReadOptions
+from stages.media import FrameRange, MediaInfo
 from warp_kernels.energy.color_model import COLOR_MODELS, ColorModel
 from warp_kernels.errors import OptionError, TrackError
 from warp_kernels.raster import MAX_SIDE
 
 KEYS = frozenset({"program", "libraries", "options", "source", "info", "model", "finished"})
 """What a header holds."""
-EARLIER = {"focus": [to_plain(NoFocus())], "read": to_plain(ReadOptions())}
-"""What tracks were made with that did not know these options."""
 MOST_VALUES = 250_000
 """Values of a field, more than any list of cuts has: a text of a few megabytes could become
 gigabytes of small lists."""
@@ -40,7 +38,7 @@ class Header:
     libraries: Mapping[str, str]
     """Versions of the libraries on which the bits depend."""
     options: Mapping[str, Any]
-    """The whole job as plain values; a list of cuts is stored itself, not its name."""
+    """`SolveOptions` as plain values; a list of cuts is stored itself, not its name."""
     source: SourceIdentity
     """The source's identity."""
     info: MediaInfo
@@ -51,20 +49,19 @@ class Header:
     """Whether the range of the job was solved to its end."""
 
     @classmethod
-    def of(cls, job: Job, info: MediaInfo, model: ColorModel) -> "Header":
-        """The header of a job that begins.
+    def of(cls, options: SolveOptions, info: MediaInfo, model: ColorModel) -> "Header":
+        """The header of a track that begins.
 
         Args:
-            job: The job.
+            options: What decides its meshes.
             info: Its source.
             model: The colour model of its snapshots.
         """
-        options = {**to_plain(job), "cuts": plain_cuts(job.cuts)}
         return cls(
             program=program_version(),
             libraries=library_versions(),
-            options=options,
-            source=identity_of(job.source),
+            options=plain_options(options),
+            source=identity_of(options.source),
             info=info,
             model=model,
         )
@@ -87,28 +84,30 @@ class Header:
         return frame_range
 
     @cached_property
-    def job(self) -> Job:
-        """The job again, without its list of cuts and without pictures, which draw nothing."""
+    def solve(self) -> SolveOptions:
+        """The options again, without a list of cuts and without pictures, which draw nothing."""
         listed = isinstance(self.options["cuts"], list)
         options = {**self.options, "cuts": "none"} if listed else self.options
-        job: Job = from_plain(Job, options, arrays=False)
-        return job
+        solve: SolveOptions = from_plain(SolveOptions, options, arrays=False)
+        return solve
 
     def with_range(self, frame_range: FrameRange) -> "Header":
-        """The header of the same job over other frames."""
+        """The header of the same solution over other frames."""
         return replace(self, options={**self.options, "frame_range": to_plain(frame_range)})
 
 
-def plain_cuts(cuts: str) -> str | list[int]:
-    """What is stored of `--cuts`: the word, or the list itself.
+def plain_options(options: SolveOptions) -> dict[str, Any]:
+    """What is stored of options; of a list of cuts the list itself.
 
     Args:
-        cuts: `auto`, `none` or the name of a list.
+        options: What decides the meshes.
 
     Raises:
         MediaError: If the list cannot be read.
     """
-    return cuts if cuts in ("auto", "none") else sorted(read_cuts(Path(cuts)))
+    cuts = options.cuts
+    listed = cuts if cuts in ("auto", "none") else sorted(read_cuts(Path(cuts)))
+    return {**to_plain(options), "cuts": listed}
 
 
 def write_header(connection: sqlite3.Connection, header: Header) -> None:
@@ -143,7 +142,7 @@ def read_header(path: Path, connection: sqlite3.Connection) -> Header:
         header = Header(
             program=_text(rows["program"]),
             libraries={_text(k): _text(v) for k, v in dict(rows["libraries"]).items()},
-            options={**EARLIER, **dict(rows["options"])},
+            options=up_to_date(dict(rows["options"])),
             source=from_plain(SourceIdentity, rows["source"]),
             info=from_plain(MediaInfo, rows["info"]),
             model=COLOR_MODELS[_text(rows["model"])],
@@ -205,4 +204,4 @@ def _check_options(header: Header) -> None:
         raise ValueError(f"cuts: {reprlib.repr(cuts)}")
     if not isinstance(header.finished, bool):
         raise ValueError(f"finished: {reprlib.repr(header.finished)}")
-    header.job.triangulate.refine.least_count(header.info.width, header.info.height)
+    header.solve.triangulate.refine.least_count(header.info.width, header.info.height)

@@ -5,16 +5,17 @@ from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from pipeline.job import Job
+from pipeline.options.output import Output
+from pipeline.options.solve_options import SolveOptions
 from pipeline.track import Header, TrackReader, TrackWriter
 from pipeline.track.agreement import differing_flags
-from pipeline.track.header import plain_cuts
-from pipeline.track.plain_values import to_plain
+from pipeline.track.header import plain_options
 from pipeline.track.schema import ENDING
 from stages.media import FrameRange, MediaInfo
 from stages.media.writing.commit import output_error, remove_left_overs, true_place
 from stages.snapshot import Snapshot
 from stages.validate import InvalidMeshError, assert_valid
+from warp_kernels.energy.color_model import ColorModel
 from warp_kernels.errors import OptionError, OutputError, TrackError
 
 
@@ -46,11 +47,13 @@ class Past:
         return [f"the track was begun with other versions: {', '.join(other)}"] if other else []
 
 
-def past_of(job: Job) -> Past | None:
-    """What an earlier run of a job left.
+def past_of(options: SolveOptions, output: Output, fitted: ColorModel) -> Past | None:
+    """What an earlier run left.
 
     Args:
-        job: The job.
+        options: What decides the meshes.
+        output: Names the track, and says whether to go on with it.
+        fitted: The colour model of the snapshots.
 
     Returns:
         None if there is no track, none is asked for, or it is to be replaced.
@@ -60,19 +63,20 @@ def past_of(job: Job) -> Past | None:
         TrackError: If it cannot be read, or was made from another source.
         OutputError: If a track cannot be written there.
     """
-    if job.track is None:
-        if job.resume:
+    path = output.track
+    if path is None:
+        if output.resume:
             raise OptionError("--resume: nothing is left to go on with; name a --track FILE.mtrk")
         return None
-    check_track_place(job.track, job)
-    if not (job.resume and job.track.exists()):
+    check_track_place(path, output)
+    if not (output.resume and path.exists()):
         return None
-    with TrackReader(job.track) as reader:
+    with TrackReader(path) as reader:
         header, last = reader.header, reader.last()
-        _check_agrees(job, header)
+        _check_agrees(path, options, fitted, header)
         if last is None:
             return None
-        _check_range(job.track, job.frame_range, header.frame_range, last.frame)
+        _check_range(path, options.frame_range, header.frame_range, last.frame)
         reader.check()
         return Past(header, Reached(last.frame, last.shot), _ground(reader, last.frame))
 
@@ -91,28 +95,30 @@ def _ground(reader: TrackReader, frame: int) -> Snapshot:
 
 
 def open_track(
-    job: Job, info: MediaInfo, past: Past | None
+    options: SolveOptions, path: Path | None, info: MediaInfo, fitted: ColorModel, past: Past | None
 ) -> AbstractContextManager[TrackWriter | None]:
-    """Begin a job's track, or go on with it.
+    """Begin a track, or go on with it.
 
     Args:
-        job: The job.
-        info: Its source.
+        options: What decides the meshes.
+        path: The track, or None if none is wanted.
+        info: The source.
+        fitted: The colour model of the snapshots.
         past: What an earlier run left.
 
     Returns:
-        The track, or None if the job wants none.
+        The track, or None if none is wanted.
     """
-    if job.track is None:
+    if path is None:
         return nullcontext()
-    wanted = job.frame_range
+    wanted = options.frame_range
     if past is None:
-        return TrackWriter(job.track, Header.of(job, info, job.fitted))
+        return TrackWriter(path, Header.of(options, info, fitted))
     if wanted.last is not None and wanted.last < past.reached.frame:
         return nullcontext()  # all of it is there, and more: the track stays as it is
     wanted = replace(past.header.frame_range, last=wanted.last, end_time=wanted.end_time)
     header = past.header.with_range(wanted)
-    return TrackWriter.resume(job.track, header, past.snapshot, past.reached.shot)
+    return TrackWriter.resume(path, header, past.snapshot, past.reached.shot)
 
 
 def check_track_name(path: Path) -> None:
@@ -130,18 +136,22 @@ def check_track_name(path: Path) -> None:
         raise OutputError(path, "is a folder", "give the name of a file")
 
 
-def check_track_place(path: Path, job: Job) -> None:
-    """Find out before any work is done whether a job's track can be written.
+def check_track_place(path: Path, output: Output) -> None:
+    """Find out before any work is done whether a track can be written.
+
+    Args:
+        path: The track.
+        output: Says whether to go on with it, or to replace what is there.
 
     Raises:
         OptionError: If its name does not end as tracks do.
         TrackError: If it is to be resumed and is a folder.
         OutputError: If it exists and is neither to be resumed nor replaced, or cannot be written.
     """
-    if job.resume and path.is_dir():
+    if output.resume and path.is_dir():
         raise TrackError(f"{path}: is a folder; give the name of a track")
     check_track_name(path)
-    if os.path.lexists(path) and not (job.resume or job.encode.overwrite):
+    if os.path.lexists(path) and not (output.resume or output.overwrite):
         raise OutputError(path, "exists already", "choose another name, --resume or --overwrite")
     remove_left_overs(true_place(path).parent)
     probe = path.with_name(f".trimotion-{os.getpid()}.test")
@@ -152,21 +162,18 @@ def check_track_place(path: Path, job: Job) -> None:
         raise output_error(path, error) from error
 
 
-def _check_agrees(job: Job, header: Header) -> None:
+def _check_agrees(path: Path, options: SolveOptions, fitted: ColorModel, header: Header) -> None:
     """Refuse to go on in another way than the track was begun."""
-    header.source.check(job.source)
-    options = {**to_plain(job), "cuts": plain_cuts(job.cuts)}
-    differing = differing_flags(header.options, options)
-    if job.fitted != header.model:
-        differing.append(
-            f"a --style of {job.fitted.name} colours instead of {header.model.name} ones"
-        )
+    header.source.check(options.source)
+    differing = differing_flags(header.options, plain_options(options))
+    if fitted != header.model:
+        differing.append(f"a --style of {fitted.name} colours instead of {header.model.name} ones")
     step = header.frame_range.step
-    if job.frame_range.step != step:
-        differing.append(f"every {job.frame_range.step}. frame instead of every {step}.")
+    if options.frame_range.step != step:
+        differing.append(f"every {options.frame_range.step}. frame instead of every {step}.")
     if differing:
         raise OptionError(
-            f"--resume: {job.track} was begun with other options ({', '.join(differing)}); give "
+            f"--resume: {path} was begun with other options ({', '.join(differing)}); give "
             "the same, or choose another name"
         )
 

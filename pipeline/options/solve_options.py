@@ -1,0 +1,112 @@
+"""What decides a mesh: the source, the frames, and how they become triangles.
+
+A track stores these options, and `--resume` and `join` compare them.
+"""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from stages.flows import Flow
+from stages.flows.dis import Dis
+from stages.focus import Focus, resolved
+from stages.focus.picture import Picture
+from stages.layouts import Layout
+from stages.layouts.importance import Importance
+from stages.media import FrameRange, ReadOptions
+from stages.triangulate import TriangulateOptions
+from warp_kernels.energy.color_model import ColorModel
+from warp_kernels.errors import OptionError
+
+
+@dataclass(frozen=True)
+class SolveOptions:
+    """How a source becomes meshes.
+
+    Raises:
+        OptionError: If an option has an impossible value.
+    """
+
+    source: Path
+    """What is converted: a video, a still or a pattern of numbered stills."""
+    frame_range: FrameRange = field(default_factory=FrameRange)
+    """The frames of the source that are converted."""
+    read: ReadOptions = field(default_factory=ReadOptions)
+    """How the source is read."""
+    seed: int = field(default=0, metadata={"help": "seed of all randomness", "group": "run"})
+    """Seed of all randomness."""
+    layout: Layout = field(
+        default_factory=Importance,
+        metadata={
+            "help": "first mesh of a shot; importance takes a grey picture: importance:MAP.png",
+            "registry": "stages.layouts:LAYOUTS",
+        },
+    )
+    """Makes the first mesh of a shot."""
+    flow: Flow = field(
+        default_factory=Dis,
+        metadata={
+            "help": "how motion between frames is estimated",
+            "registry": "stages.flows:FLOWS",
+            "group": "motion",
+        },
+    )
+    """Estimates the motion between frames."""
+    weights: str | None = field(
+        default=None,
+        metadata={
+            "help": "grey picture, numbered stills or video of the source's size: errors count "
+            "most where it is white, a 255th of that where it is black",
+            "metavar": "MAP",
+        },
+    )
+    """Where errors count more: a still for all frames, or a clip with a picture for each."""
+    focus: tuple[Focus, ...] = field(
+        default=(),
+        metadata={
+            "help": "where errors count more, repeatable, what several add is summed: faces, "
+            "saliency, motion, center, picture:FILE (as --weights), none for nowhere, auto for "
+            "faces where there are any (default: auto)",
+            "registry": "stages.focus:FOCI",
+        },
+    )
+    """Where errors count more; empty for `auto`, or for nothing beside `weights`."""
+    triangulate: TriangulateOptions = field(default_factory=TriangulateOptions)
+    """How one picture becomes triangles."""
+    cuts: str = field(
+        default="auto",
+        metadata={
+            "help": "where a new shot starts: auto finds hard cuts, none ignores them, a file "
+            "lists the first frames of the shots (JSON or one number a line)",
+            "metavar": "auto|none|FILE",
+            "group": "motion",
+        },
+    )
+    """`auto`, `none`, or a file with the first frames of new shots."""
+    independent: bool = field(
+        default=False,
+        metadata={
+            "help": "triangulate every frame from scratch (flickers; for comparison)",
+            "group": "motion",
+        },
+    )
+    """Whether every frame starts from a new layout."""
+
+    def __post_init__(self) -> None:
+        if self.seed < 0:
+            raise OptionError(f"--seed {self.seed}: must be 0 or more")
+        resolved(self.focus, self.weights)
+
+    @property
+    def foci(self) -> tuple[Focus, ...]:
+        """Where errors count more: the members that are at work, `weights` among them."""
+        return resolved(self.focus, self.weights)
+
+    @property
+    def maps(self) -> tuple[Picture, ...]:
+        """The members of `foci` that are pictures of the user's."""
+        return tuple(member for member in self.foci if isinstance(member, Picture))
+
+    @property
+    def model(self) -> ColorModel:
+        """The colour model that is optimised."""
+        return self.triangulate.model
