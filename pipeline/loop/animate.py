@@ -16,7 +16,7 @@ from pipeline.look.region_masks import check_followed
 from pipeline.look.render_job import render_job
 from pipeline.loop.convert import convert
 from pipeline.loop.parts_folder import make_folder, parts_of, remove_folder
-from pipeline.loop.plan import plan
+from pipeline.loop.plan import Plan, plan
 from pipeline.loop.processes import InProcesses
 from pipeline.loop.ranges import InThisProcess, Part, RangeRunner, Work
 from pipeline.loop.render import render
@@ -83,10 +83,10 @@ def solve(
     """
     runner = runner or runner_of(run)
     work = Work(options, replace(run, jobs=1), fitted or options.model)
-    parts = _parts(options, output, runner)
-    if len(parts) > 1:
-        return _joined(work, parts, output, runner, progress)
-    (result,) = runner.run(work, parts, progress)
+    planned = _planned(options, output, runner)
+    if planned is not None:
+        return _joined(work, planned, output, runner, progress)
+    (result,) = runner.run(work, [Part(options.frame_range, output)], progress)
     return result
 
 
@@ -99,33 +99,34 @@ def runner_of(run: Run) -> RangeRunner:
     return InProcesses(run.jobs) if run.jobs > 1 else InThisProcess()
 
 
-def _parts(options: SolveOptions, output: Output, runner: RangeRunner) -> list[Part]:
-    """What is solved apart: whole shots where there are places for several, else all at once."""
-    whole = [Part(options.frame_range, output)]
+def _planned(options: SolveOptions, output: Output, runner: RangeRunner) -> Plan | None:
+    """Which shots are solved apart, if there are places for several; else None."""
     if runner.places == 1 or output.track is None:
-        return whole
+        return None
     check_track_place(output.track, output)
     if output.resume and output.track.exists():
-        return whole  # what is resumed goes on inside a shot
-    ranges = plan(options).ranges
-    return whole if len(ranges) == 1 else parts_of(ranges, output.track)
+        return None  # what is resumed goes on inside a shot
+    planned = plan(options)
+    return planned if len(planned.ranges) > 1 else None
 
 
 def _joined(
-    work: Work, parts: list[Part], output: Output, runner: RangeRunner, progress: Progress
+    work: Work, planned: Plan, output: Output, runner: RangeRunner, progress: Progress
 ) -> Animated:
     """Let ranges be solved, and put their tracks together."""
     begun = perf_counter()
     track = output.track
     assert track is not None
     make_folder(track, resume=output.resume, overwrite=output.overwrite)
+    parts = parts_of(planned.ranges, track)
     results = runner.run(work, parts, progress)
     tracks = [part.output.track for part in parts if part.output.track is not None]
     join(tracks, track, work.options.frame_range)
     with TrackReader(track) as reader:
         mean = float(np.mean([row.rmse for row in reader.rows]))
     remove_folder(track)
-    notes = _each_once(note for result in results for note in result.notes)
+    told = (note for result in results for note in result.notes)
+    notes = _each_once([*planned.notes, *told])
     if len(parts) < runner.places:
         notes = (*notes, f"{len(parts)} shots: so many processes, not {runner.places}")
     warnings = _each_once(text for result in results for text in result.warnings)
@@ -170,7 +171,7 @@ def _solved_then_drawn(job: Job, progress: Progress, runner: RangeRunner) -> Ani
         result,
         seconds=perf_counter() - begun,
         warnings=(*solved.warnings, *result.warnings),
-        notes=(*solved.notes, *result.notes),
+        notes=_each_once([*solved.notes, *result.notes]),
     )
 
 

@@ -14,7 +14,6 @@ from pipeline.job import Job
 from pipeline.look.drawing import Drawing, check_drawing
 from pipeline.look.source_pictures import source_pictures
 from pipeline.loop.attention import Attention
-from pipeline.loop.expected_frames import expected_frames
 from pipeline.loop.motion import check_cuts, open_around
 from pipeline.loop.prepare import prepared
 from pipeline.loop.result import Animated, Tally
@@ -25,6 +24,7 @@ from pipeline.track import TrackReader, TrackWriter
 from pipeline.track.resume import Past, open_track, past_of
 from stages.masks.weight_maps import WeightMap
 from stages.media import Decoder
+from stages.media.expected_frames import expected_frames
 from stages.motion.advect import advect
 from stages.triangulate import Triangulator
 from warp_kernels.device.device import Device
