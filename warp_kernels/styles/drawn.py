@@ -115,6 +115,12 @@ class Drawn(Style):
         """Whether there is paper."""
         return self.paper != NO_PAPER
 
+    @property
+    def ground(self) -> str | None:
+        """The sheet, if all triangles are one."""
+        is_sheet = self.paper not in (NO_PAPER, OWN_PAPER) and self.blend == "normal"
+        return self.paper if is_sheet else None
+
     def numbers(self) -> tuple[float, ...]:
         """In the order of `tones.strokes`."""
         light = (value**2 for color in (self.ink, self._sheet) for value in parse_color(color))
