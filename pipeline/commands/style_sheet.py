@@ -1,5 +1,6 @@
 """One portrait in every style, as the paper's Fig. 6 shows them."""
 
+from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
@@ -44,9 +45,14 @@ SAMPLE = Path(__file__).parents[2] / "sample_videos" / "astronaut.jpg"
 
 
 def draw_sheet(
-    picture: str | None, output: str, *, triangles: int = TRIANGLES, overwrite: bool = False
+    picture: str | None,
+    output: str,
+    *,
+    triangles: int = TRIANGLES,
+    overwrite: bool = False,
+    names: Iterable[str] = tuple(STYLES),
 ) -> None:
-    """Write a picture that shows all styles.
+    """Write a picture that shows styles.
 
     Args:
         picture: What is drawn: a still, or a clip whose first frame is taken; None for the
@@ -54,6 +60,7 @@ def draw_sheet(
         output: A still.
         triangles: How many triangles it becomes.
         overwrite: Whether to replace what is there.
+        names: The styles; all of them if left out.
 
     Raises:
         MediaError: If the picture cannot be read.
@@ -70,7 +77,7 @@ def draw_sheet(
     # faces count more, as in every other picture
     (alone,) = Attention([Faces()], info, 1, triangles).beside([InShot(frame.index, frame)])
     frame = alone.frame
-    stacks = [stack for name in STYLES for stack in STYLES[name].portraits or (name,)]
+    stacks = [stack for name in names for stack in STYLES[name].portraits or (name,)]
     with Device("auto") as device:
         snapshot = _triangulated(frame, device, triangles)
         cells = [_drawn(stack.split(OVER), snapshot, frame, device) for stack in stacks]
