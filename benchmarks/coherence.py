@@ -32,8 +32,8 @@ from pipeline.options.solve_options import SolveOptions
 from pipeline.progress import Progress
 from stages.flows.none import NoFlow
 from stages.media import FrameRange, open_decoder
-from stages.topology.refine import RefineOptions
-from stages.triangulate import TriangulateOptions
+from stages.topology.refine_options import RefineOptions
+from stages.triangulate_options import TriangulateOptions
 
 ROOT = Path(__file__).parents[1]
 RESULTS = ROOT / "docs" / "results"

@@ -23,8 +23,9 @@ from stages.layouts import Layout
 from stages.media import FrameRange, open_decoder
 from stages.motion.advect import Carried
 from stages.snapshot import Snapshot
-from stages.topology.refine import RefineOptions
-from stages.triangulate import TriangulateOptions, Triangulator
+from stages.topology.refine_options import RefineOptions
+from stages.triangulate import Triangulator
+from stages.triangulate_options import TriangulateOptions
 from stages.validate import assert_valid
 from tests import media_samples as samples
 from tests.jobs import changed, job_of

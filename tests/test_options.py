@@ -22,7 +22,7 @@ from stages.flows.dis import Dis
 from stages.layouts import LAYOUTS
 from stages.layouts.importance import Importance
 from stages.media import EncodeOptions
-from stages.triangulate import TriangulateOptions
+from stages.triangulate_options import TriangulateOptions
 from tests.jobs import changed, job_of
 from warp_kernels.errors import OptionError
 from warp_kernels.styles import STYLES

@@ -22,8 +22,9 @@ from stages.media import (
 from stages.media.color.yuv import over_paper
 from stages.render import Renderer
 from stages.snapshot import Snapshot
-from stages.topology.refine import RefineOptions
-from stages.triangulate import TriangulateOptions, Triangulator
+from stages.topology.refine_options import RefineOptions
+from stages.triangulate import Triangulator
+from stages.triangulate_options import TriangulateOptions
 from warp_kernels.device.device import Device
 from warp_kernels.energy.color_model import LINEAR
 from warp_kernels.errors import OptionError

@@ -10,7 +10,8 @@ from pipeline.options.build import build_look, build_run
 from stages.frame import Frame
 from stages.render import Renderer
 from stages.snapshot import Snapshot
-from stages.triangulate import TriangulateOptions, Triangulator
+from stages.triangulate import Triangulator
+from stages.triangulate_options import TriangulateOptions
 from warp_kernels.energy.color_model import ColorModel
 from warp_kernels.errors import OptionError
 

@@ -13,7 +13,7 @@ import numpy as np
 from pipeline.options.declared import own_first
 from pipeline.options.nearest import nearest
 from stages.masks.gray import read_gray
-from stages.masks.regions import Region
+from stages.masks.region import Region
 from stages.media import input_pattern
 from warp_kernels.errors import OptionError
 
