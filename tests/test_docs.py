@@ -21,6 +21,7 @@ import readme_pictures  # noqa: E402
 import style_tables  # noqa: E402
 
 README = ROOT / "README.md"
+OPTIONS = ROOT / "docs" / "options.md"
 MOST_LINES = 250
 """README sells and starts; everything else is a page of docs/."""
 PAGES = doc_commands.pages()
@@ -111,6 +112,22 @@ def test_every_option_is_told_of() -> None:
         if option.startswith("--")
     }
     assert sorted(options - told) == []
+
+
+def test_options_have_the_defaults_that_their_page_says() -> None:
+    """The help says `(default: 1500)`; the row of the option in docs/options.md ends with that."""
+    rows = re.findall(r"^\| (`--.*?) \| .* \| (.*?) \|$", prose(OPTIONS), flags=re.MULTILINE)
+    said = {flag: last for flags, last in rows for flag in re.findall(r"--[\w-]+", flags)}
+    differing = {
+        option: default[1]
+        for parser in parsers(build_parser())
+        for action in parser._actions
+        for option in action.option_strings
+        if (default := re.search(r"\(default: ([\w.]+)\)", action.help or ""))
+        and option in said
+        and not re.search(rf"(?<![\w.]){re.escape(default[1])}(?![\w.])", said[option])
+    }
+    assert differing == {}
 
 
 @pytest.mark.parametrize("page", PAGES, ids=relative)
