@@ -76,6 +76,9 @@ class Registry(Mapping[str, type[Kind]]):
     def __len__(self) -> int:
         return len(self._homes) + len(self.added)
 
+    def __str__(self) -> str:
+        return self._kind
+
     def __contains__(self, name: object) -> bool:
         return name in self._homes or name in self.added
 
@@ -93,6 +96,15 @@ class Registry(Mapping[str, type[Kind]]):
 
         found = sorted(entry_points(group=f"trimotion.{self._kind}"), key=lambda e: e.name)
         return {e.name: e for e in found if e.name not in self._homes}
+
+    def origin(self, name: str) -> str:
+        """The package that adds a member, with its version.
+
+        Args:
+            name: One of `added`.
+        """
+        entry = self.added[name]
+        return entry.module if entry.dist is None else f"{entry.dist.name} {entry.dist.version}"
 
     def name_of(self, cls: type) -> str:
         """The name of a member's class; of a stranger its own.
@@ -120,10 +132,9 @@ class Registry(Mapping[str, type[Kind]]):
             if not (isinstance(found, type) and hasattr(found, str(self._method))):
                 raise TypeError(f"a class with {self._method} is wanted")
         except Exception as error:
-            package = entry.dist.name if entry.dist is not None else entry.module
             reason = " ".join(f"{type(error).__name__}: {error}".split())
             raise OptionError(
-                f"{entry.name} of the package {package} cannot be used ({reason}); update that "
-                "package or remove it"
+                f"the package {self.origin(entry.name)} does not work here ({reason}); update it "
+                "or remove it"
             ) from error
         return found

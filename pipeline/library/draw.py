@@ -6,7 +6,9 @@ from typing import Any
 import numpy as np
 
 from pipeline.library.device import opened_device
-from pipeline.options.build import build_look, build_run
+from pipeline.options.build import fill, values_of
+from pipeline.options.look import Look
+from pipeline.options.run import Run
 from stages.frame import Frame
 from stages.render import Renderer
 from stages.snapshot import Snapshot
@@ -17,7 +19,7 @@ from warp_kernels.errors import OptionError
 
 
 def drawn(
-    snapshot: Snapshot, frame: Frame | None, model: ColorModel, values: Mapping[str, Any]
+    snapshot: Snapshot, frame: Frame | None, model: ColorModel, given: Mapping[str, Any]
 ) -> np.ndarray:
     """Draw a snapshot.
 
@@ -25,7 +27,7 @@ def drawn(
         snapshot: The triangles and their colours.
         frame: The picture, or None if it was not kept.
         model: The colour model that was optimised.
-        values: Options of the look and the run, by field name.
+        given: Options of the look and the run, by field name.
 
     Returns:
         Code values, [rows, columns, 3] or [rows, columns, 4] uint8.
@@ -33,7 +35,8 @@ def drawn(
     Raises:
         OptionError: If a value is impossible, or the picture is needed and not there.
     """
-    look, run = build_look(values), build_run(values)
+    values = values_of(given)
+    look, run = fill(Look, values), fill(Run, values)
     styles, fitted = look.shown_styles(model), look.fitted(model)
     size = (snapshot.mesh.width, snapshot.mesh.height)
     output = look.size_for(size)
