@@ -12,11 +12,11 @@ import numpy as np
 import pytest
 
 from pipeline.cli import main
+from pipeline.envelope import InShot
 from pipeline.loop.animate import animate
 from pipeline.loop.attention import UNIT, WINDOW, Attention, reach_of
 from pipeline.loop.face_tracks import CARRIED, MEMORY, SPACING, FaceTracks
 from pipeline.loop.processes import solve_in_parts
-from pipeline.loop.shots import ShotFrame
 from pipeline.options.members import parse_member
 from pipeline.options.solve_options import SolveOptions
 from pipeline.progress import Progress
@@ -100,12 +100,9 @@ def whole(clip: Path) -> Path:
     return track
 
 
-def shot_frames(pictures: list[np.ndarray], first: int = 0) -> list[ShotFrame]:
+def shot_frames(pictures: list[np.ndarray], first: int = 0) -> list[InShot]:
     """Frames of one shot."""
-    return [
-        ShotFrame(frame_of(picture, first + n), opens_shot=n == 0)
-        for n, picture in enumerate(pictures)
-    ]
+    return [InShot(first, frame_of(picture, first + n)) for n, picture in enumerate(pictures)]
 
 
 def weights_of(pictures: list[np.ndarray], *members: object, first: int = 0) -> list[np.ndarray]:

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pipeline.look.drawn_frame import Take
+from pipeline.envelope import Solved
 from pipeline.look.smooth import Smoother, reach_of
 from pipeline.options.look import Look
 from stages.mesh import Mesh
@@ -25,9 +25,9 @@ def smooth(shot: list[Snapshot], sigma: float, first_of_second: int | None = Non
     smoother, found = Smoother(sigma), []
     for number, snapshot in enumerate(shot):
         second = first_of_second is not None and number >= first_of_second
-        found += smoother.add(Take(snapshot, int(second)))
+        found += smoother.add(Solved(int(second), snapshot))
         assert len(smoother._window) <= 2 * reach_of(sigma) + 1
-    return [take.snapshot for take in [*found, *smoother.rest()]]
+    return [solved.snapshot for solved in [*found, *smoother.rest()]]
 
 
 def paths(shot: list[Snapshot]) -> np.ndarray:

@@ -1,5 +1,6 @@
 """Maps of weights: what is read, what is refused, whose frame gets which, and what they change."""
 
+from contextlib import closing
 from fractions import Fraction
 from pathlib import Path
 
@@ -71,13 +72,14 @@ def source_frames(*numbers: int) -> list[Frame]:
 
 def read_still(path: Path) -> np.ndarray:
     """The weights that a still gives, [H, W] uint8."""
-    (frame,) = WeightMap(str(path), SIZE, FrameRange()).beside(source_frames(0))
-    return frame.weights
+    (frame,) = source_frames(0)
+    return WeightMap(str(path), SIZE, FrameRange()).weighed(frame).weights
 
 
 def read_numbers(path: Path, frame_range: FrameRange, *numbers: int) -> list[int]:
     """Weight of the first pixel for each frame of the source."""
-    frames = WeightMap(str(path), SIZE, frame_range).beside(source_frames(*numbers))
+    with closing(WeightMap(str(path), SIZE, frame_range)) as weights:
+        frames = [weights.weighed(frame) for frame in source_frames(*numbers)]
     return [int(frame.weights[0, 0]) for frame in frames]
 
 
@@ -98,7 +100,7 @@ def test_still_gives_its_greys_to_every_frame(tmp_path: Path) -> None:
     """Grey is weight, black is one, and all frames share one array."""
     path = samples.write_still(tmp_path / "w.png", ramp())
     np.testing.assert_array_equal(read_still(path), np.maximum(ramp()[..., 0], 1))
-    frames = list(WeightMap(str(path), SIZE, FrameRange()).beside(source_frames(3, 4, 9)))
+    frames = list(map(WeightMap(str(path), SIZE, FrameRange()).weighed, source_frames(3, 4, 9)))
     assert [frame.index for frame in frames] == [3, 4, 9]
     assert frames[0].weights is frames[2].weights
     assert frames[0].weights.min() == 1
@@ -125,7 +127,7 @@ def test_transparent_parts_count_least(tmp_path: Path) -> None:
     pixels[:, 10:20, 3], pixels[:, 20:, 3] = 128, 0
     path = samples.write_still(tmp_path / "w.png", pixels, "rgba")
     weights = WeightMap(str(path), SIZE, FrameRange())
-    (frame,) = weights.beside(source_frames(0))
+    (frame,) = map(weights.weighed, source_frames(0))
     assert frame.weights[0, [0, 15, 40]].tolist() == [255, 128, 1]
     assert any("over black" in note for note in weights.notes)
 
@@ -144,7 +146,8 @@ def test_compressed_grey_is_grey(tmp_path: Path) -> None:
     """Strong compression of a grey clip, stored as brightness and colour."""
     pictures = [np.roll(ramp(), 5 * n, axis=1) for n in range(3)]
     path = samples.write_video(tmp_path / "w.mp4", pictures, options={"crf": "35"})
-    frames = list(WeightMap(str(path), SIZE, FrameRange()).beside(source_frames(0, 1, 2)))
+    with closing(WeightMap(str(path), SIZE, FrameRange())) as weights:
+        frames = list(map(weights.weighed, source_frames(0, 1, 2)))
     for frame, picture in zip(frames, pictures, strict=True):
         assert np.abs(frame.weights.astype(int) - picture[..., 0]).mean() < 12
 
@@ -178,7 +181,9 @@ def test_black_is_refused_or_told(tmp_path: Path) -> None:
     for values, told in (([0, 0, 7], 0), ([0, 0, 0], 1)):
         path = write_levels(tmp_path / "w.mkv", values)
         weights = WeightMap(str(path), SIZE, FrameRange())
-        assert len(list(weights.beside(source_frames(0, 1, 2)))) == 3
+        for frame in source_frames(0, 1, 2):
+            weights.weighed(frame)
+        weights.close()
         assert len(weights.warnings) == told
 
 

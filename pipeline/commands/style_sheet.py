@@ -4,8 +4,8 @@ from pathlib import Path
 
 import numpy as np
 
+from pipeline.envelope import InShot
 from pipeline.loop.attention import Attention
-from pipeline.loop.shots import ShotFrame
 from pipeline.options.members import parse_member
 from stages.focus.faces import Faces
 from stages.frame import Frame
@@ -67,10 +67,10 @@ def draw_sheet(
     info = probe(source)
     check_output(output, info, (WIDTH, WIDTH), EncodeOptions(overwrite=overwrite), ONE)
     with open_decoder(source) as decoder:
-        alone = [ShotFrame(next(decoder), opens_shot=True)]
+        frame = next(decoder)
     # faces count more, as in every other picture
-    (shown,) = Attention([Faces()], info, 1, triangles).beside(alone)
-    frame = shown.frame
+    (alone,) = Attention([Faces()], info, 1, triangles).beside([InShot(frame.index, frame)])
+    frame = alone.frame
     stacks = [stack for name in STYLES for stack in STYLES[name].portraits or (name,)]
     with Device("auto") as device:
         snapshot = _triangulated(frame, device, triangles)

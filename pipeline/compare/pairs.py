@@ -1,15 +1,13 @@
 """The frames of an output beside those of its source, at the source's size."""
 
 import math
-from collections import deque
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
 
 from pipeline.compare.resample import resample
-from pipeline.loop.shots import with_shots
 from stages.frame import Frame
 from stages.media import Decoder
 from warp_kernels.errors import TrimotionError
@@ -50,23 +48,6 @@ def matched(original: Decoder, result: Decoder) -> Iterator[Matched]:
         height, width = before.pixels.shape[:2]
         shown = after.pixels[:height, :width] if crop else resample(after.pixels, (width, height))
         yield Matched(before, shown, time)
-
-
-def with_detected_shots(pairs: Iterable[Matched]) -> Iterator[tuple[Matched, int]]:
-    """Pairs with the numbers of the frames with which their shots begin, found in the source."""
-    waiting: deque[Matched] = deque()
-
-    def frames() -> Iterator[Frame]:
-        """The frames of the source, whose pairs wait for them."""
-        for pair in pairs:
-            waiting.append(pair)
-            yield pair.frame
-
-    shot = 0
-    for shot_frame in with_shots(frames(), "auto"):
-        if shot_frame.opens_shot:
-            shot = shot_frame.frame.index
-        yield waiting.popleft(), shot
 
 
 def is_padded(original: Decoder, result: Decoder) -> bool:

@@ -3,9 +3,10 @@
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from pipeline.envelope import Solved
 from pipeline.library.given import given_values
 from pipeline.library.triangulation import Origin, Triangulation
-from pipeline.loop.animate import Solved, prepared, solved_frames
+from pipeline.loop.animate import prepared, solved_frames
 from pipeline.loop.attention import Attention
 from pipeline.options.build import fill, values_of
 from pipeline.options.run import Run

@@ -3,8 +3,8 @@
 from contextlib import ExitStack
 from types import TracebackType
 
+from pipeline.envelope import Solved
 from pipeline.job import Job
-from pipeline.look.drawn_frame import Take
 from pipeline.look.region_masks import own_mask
 from pipeline.look.smooth import Smoother
 from stages.look.fading import Fading
@@ -53,25 +53,25 @@ class Drawing:
         """Choices that were made, one sentence each; complete after the block."""
         return self._encoder.notes
 
-    def draw(self, take: Take) -> None:
+    def draw(self, solved: Solved) -> None:
         """Draw and encode a frame, or an earlier one that has been waiting for it."""
-        for smooth in self._smoother.add(take):
+        for smooth in self._smoother.add(solved):
             self._draw(smooth)
 
-    def _draw(self, take: Take) -> None:
-        self._follow(take)
-        if take.is_shown:
-            snapshot = take.snapshot
+    def _draw(self, solved: Solved) -> None:
+        self._follow(solved)
+        if solved.is_shown:
+            snapshot = solved.snapshot
             masks = [mask.at(snapshot.frame_index) for mask in self._masks]
             pixels = self._renderer.render(
-                snapshot, self._fading, take.source, masks, take.shares, self._lay
+                snapshot, self._fading, solved.source, masks, solved.shares, self._lay
             )
             self._encoder.write(pixels, snapshot.pts, snapshot.time_base, snapshot.frame_index)
 
-    def _follow(self, take: Take) -> None:
+    def _follow(self, solved: Solved) -> None:
         """Take on what lies on a frame from the one before, and what lingers of it."""
-        begins, snapshot = take.shot != self._shot, take.snapshot
-        self._shot = take.shot
+        begins, snapshot = solved.shot != self._shot, solved.snapshot
+        self._shot = solved.shot
         if self._lays_strokes:
             known = None if begins else self._strokes
             mesh = snapshot.mesh
@@ -79,9 +79,9 @@ class Drawing:
         if self._blend:
             fading = None if begins else self._fading
             if fading is None:
-                self._fading = Fading.begin(snapshot, self._blend, take.shares, self._lay)
+                self._fading = Fading.begin(snapshot, self._blend, solved.shares, self._lay)
             else:
-                self._fading = fading.followed_by(snapshot, take.shares, self._lay)
+                self._fading = fading.followed_by(snapshot, solved.shares, self._lay)
 
     @property
     def _lay(self) -> Lay | None:
@@ -105,8 +105,8 @@ class Drawing:
         with ExitStack() as closing:
             closing.push(self._encoder)  # a failure of the last frames leaves nothing either
             closing.callback(self._close_masks)
-            for take in self._smoother.rest():
-                self._draw(take)
+            for solved in self._smoother.rest():
+                self._draw(solved)
 
     def _close_masks(self) -> None:
         for mask in self._masks:

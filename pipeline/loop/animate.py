@@ -4,23 +4,22 @@ Solving turns frames into snapshots, drawing turns snapshots into frames. `anima
 once, `solve` the first and `render` the second, with a mesh track in between.
 """
 
-from collections import deque
-from collections.abc import Generator, Iterable, Iterator
-from contextlib import closing, nullcontext
+from collections.abc import Generator, Iterable, Iterator, Sequence
+from contextlib import ExitStack, closing, nullcontext
 from dataclasses import dataclass, replace
 from time import perf_counter
 
 import numpy as np
 
+from pipeline.envelope import MeshFrom, Prepared, Solved
 from pipeline.job import Job
 from pipeline.look.drawing import Drawing, check_drawing
-from pipeline.look.drawn_frame import Take
 from pipeline.look.region_members import followed_shares
 from pipeline.look.rows_around import rows_around
 from pipeline.look.source_pictures import source_pictures
 from pipeline.loop.attention import Attention
 from pipeline.loop.expected_frames import expected_frames
-from pipeline.loop.motion import Step, check_cuts, open_around, steps
+from pipeline.loop.motion import check_cuts, open_around, with_motion
 from pipeline.loop.shots import with_shots
 from pipeline.loop.threads import Behind, ahead
 from pipeline.options.output import Output
@@ -59,20 +58,6 @@ class Animated:
     """Damage that was met, one sentence each."""
     notes: tuple[str, ...]
     """Choices that were made, one sentence each."""
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class Solved:
-    """What a frame became."""
-
-    snapshot: Snapshot
-    """Its triangles and colours."""
-    shot: int
-    """Number of the frame with which its shot begins."""
-    source: np.ndarray | None = None
-    """Its picture [code values], [H, W, 3]; None unless a look needs it."""
-    is_stored: bool = False
-    """Whether the track holds it already."""
 
 
 def animate(job: Job, progress: Progress) -> Animated:
@@ -155,7 +140,7 @@ def render(job: Job, track: TrackReader, info: MediaInfo, progress: Progress) ->
         shares = followed_shares(options, look, track, rows)
         for snapshot, row, source, share in zip(fitted, rows, sources, shares, strict=True):
             is_shown = shown[0].frame <= row.frame <= shown[-1].frame
-            writer.put(Take(snapshot, row.shot, is_shown, source, share))
+            writer.put(Solved(row.shot, snapshot, source, share, is_shown=is_shown))
             if is_shown:
                 tally.add(row.triangle_count, snapshot.rmse)
     return tally.result(begun, (), [*device.notes, *drawing.notes])
@@ -181,7 +166,7 @@ def _convert(job: Job, fitted: ColorModel, progress: Progress) -> Animated:
         drawing = Drawing(job, info, device) if draws else None
         tally = _Tally(progress, expected_frames(options.frame_range, info))
         restarts: list[str] = []
-        found = _open_steps(decoder, attention, maps, options, past, restarts)
+        found = _opened(decoder, attention, maps, options, past, restarts)
         with device, open_track(options, track_path, info, fitted, past) as track:
             writer = Behind(_Writer(track, drawing), SOLVED_BEHIND)
             with drawing or nullcontext(), closing(found), writer:
@@ -216,14 +201,14 @@ def triangulator_of(
     return Triangulator(device, size, options.triangulate, fitted)
 
 
-def _open_steps(
+def _opened(
     decoder: Decoder,
     attention: Attention,
-    maps: Iterable[WeightMap],
+    maps: Sequence[WeightMap],
     options: SolveOptions,
     past: Past | None,
     notes: list[str],
-) -> Generator[Step, None, None]:
+) -> Generator[Prepared, None, None]:
     """Decode and prepare frames ahead of the solution."""
     reached = None if past is None else past.reached
     found = prepared(decoder, decoder.info, attention, maps, options, reached, notes)
@@ -234,45 +219,42 @@ def prepared(
     frames: Iterable[Frame],
     info: MediaInfo,
     attention: Attention,
-    maps: Iterable[WeightMap],
+    maps: Sequence[WeightMap],
     options: SolveOptions,
     reached: Reached | None,
     notes: list[str],
-) -> Iterator[Step]:
+) -> Iterator[Prepared]:
     """Find cuts, weigh and estimate motion: all that frames go through before they are solved.
 
     Args:
         frames: The frames of the range and around it.
         info: Their source.
         attention: Weighs them by what `--focus` names.
-        maps: Weigh them by pictures.
+        maps: Weigh them by pictures; closed after the last frame.
         options: Say what is wanted.
         reached: Where an earlier run ended, or None.
         notes: Receives what the user of a track should know, one sentence each.
     """
-    shot_frames = attention.beside(with_shots(frames, options.cuts))
-    found = steps(shot_frames, info, options, reached, notes)
-    for weights in maps:
-        found = _weighed(found, weights)
-    return found
+    weighed = attention.beside(with_shots(frames, options.cuts))
+    found = with_motion(weighed, info, options, reached, notes)
+    return _beneath(maps, found) if maps else found
 
 
-def _weighed(found: Iterable[Step], weights: WeightMap) -> Iterator[Step]:
-    """Steps whose frames have their weights; frames around the range need none."""
-    waiting: deque[Step] = deque()
-
-    def frames() -> Iterator[Frame]:
-        """The frames of the steps, which wait for them."""
-        for step in found:
-            waiting.append(step)
-            yield step.frame
-
-    for frame in weights.beside(frames()):
-        yield replace(waiting.popleft(), frame=frame)
+def _beneath(maps: Sequence[WeightMap], found: Iterable[Prepared]) -> Iterator[Prepared]:
+    """Weigh frames by pictures; one that is solved already needs no weights."""
+    with ExitStack() as stack:
+        for weights in maps:
+            stack.callback(weights.close)
+        for prepared in found:
+            frame = prepared.frame
+            if prepared.mesh_from is not MeshFrom.TRACK:
+                for weights in maps:
+                    frame = weights.weighed(frame)
+            yield replace(prepared, frame=frame)
 
 
 def solved_frames(
-    found: Iterable[Step],
+    found: Iterable[Prepared],
     triangulator: Triangulator,
     options: SolveOptions,
     past: Past | None,
@@ -280,8 +262,6 @@ def solved_frames(
     keeps: bool = False,
 ) -> Iterator[Solved]:
     """Triangulate frame after frame, each from the mesh of the one before.
-
-    A picture that comes again, as in what is drawn for every other frame, keeps its mesh.
 
     Args:
         found: The frames, and the motion between them; one is taken for each that is given.
@@ -291,18 +271,19 @@ def solved_frames(
         keeps: Whether what draws them needs their pictures.
     """
     snapshot = None if past is None else past.snapshot
-    for step in found:
-        if snapshot is not None and step.before is not None:
-            triangulator.recall(step.before, snapshot)
-        if snapshot is None or step.passage is None:
-            rng = np.random.default_rng([options.seed, step.frame.index])
-            snapshot = triangulator.first(step.frame, options.layout, rng)
-        elif step.repeats and not options.maps:
-            snapshot = snapshot.again(step.frame)
+    for prepared in found:
+        frame, mesh_from = prepared.frame, prepared.mesh_from
+        if snapshot is None or mesh_from is MeshFrom.LAYOUT:
+            rng = np.random.default_rng([options.seed, frame.index])
+            snapshot = triangulator.first(frame, options.layout, rng)
+        elif mesh_from is MeshFrom.TRACK:
+            triangulator.recall(frame, snapshot)
+            continue
+        elif mesh_from is MeshFrom.SAME_PICTURE:
+            snapshot = snapshot.again(frame)
         else:
-            carried = advect(snapshot.mesh, step.passage)
-            snapshot = triangulator.next(step.frame, carried, snapshot)
-        yield Solved(snapshot, step.shot, step.frame.pixels if keeps else None)
+            snapshot = triangulator.next(frame, advect(snapshot.mesh, mesh_from), snapshot)
+        yield prepared.solved(snapshot, keeps_picture=keeps)
 
 
 def _recall(job: Job, tally: "_Tally", writer: Behind[Solved] | None) -> None:
@@ -314,7 +295,7 @@ def _recall(job: Job, tally: "_Tally", writer: Behind[Solved] | None) -> None:
         sources = source_pictures(options, job.look, rows) if is_drawn else [None] * len(rows)
         for row, source in zip(rows, sources, strict=True):
             if writer is not None:
-                writer.put(Solved(track.snapshot(row.frame), row.shot, source, is_stored=True))
+                writer.put(Solved(row.shot, track.snapshot(row.frame), source, is_stored=True))
             tally.add(row.triangle_count, row.rmse, is_told=is_drawn)
 
 
@@ -376,4 +357,4 @@ class _Writer:
         if self._track is not None and not solved.is_stored:
             self._track.write(solved.snapshot, solved.shot)
         if self._drawing is not None:
-            self._drawing.draw(Take(solved.snapshot, solved.shot, source=solved.source))
+            self._drawing.draw(solved)

@@ -61,11 +61,10 @@ def plan(options: SolveOptions, parts: int | None = None) -> Plan:
     last = -1
     with open_around(options, None) as decoder:
         check_cuts(options.cuts, options.source, decoder.info)
-        for shot_frame in with_shots(decoder, options.cuts):
-            frame = shot_frame.frame
-            if holds(options.frame_range, frame, decoder.info):
-                last = frame.index
-                if shot_frame.opens_shot or not starts:
+        for seen in with_shots(decoder, options.cuts):
+            if holds(options.frame_range, seen.frame, decoder.info):
+                last = seen.frame.index
+                if seen.opens_shot or not starts:
                     starts.append(last)
     step = options.frame_range.step
     ends = [*(start - step for start in starts[1:]), last]
