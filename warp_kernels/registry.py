@@ -6,6 +6,7 @@ with `neon = "my_package:Neon"`. It cannot replace one that is there.
 """
 
 from collections.abc import Iterator, Mapping
+from dataclasses import is_dataclass
 from functools import cached_property
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -87,6 +88,11 @@ class Registry(Mapping[str, type[Kind]]):
         """Those that this program brings: they can all be imported."""
         return {name: self[name] for name in self._homes}
 
+    @property
+    def usable(self) -> Mapping[str, type[Kind]]:
+        """All that can be imported: packages that do not work here are left out."""
+        return {name: cls for name in self if (cls := self._found(name)) is not None}
+
     @cached_property
     def added(self) -> "Mapping[str, EntryPoint]":
         """What installed packages add, by name; nothing of it is imported yet."""
@@ -116,21 +122,22 @@ class Registry(Mapping[str, type[Kind]]):
         for name, home in homes.items():
             if home.replace(" ", "") == f"{cls.__module__}:{cls.__qualname__}":
                 return name
-        return next((name for name in self.added if self._is(name, cls)), cls.__name__)
+        named = (name for name in self.added if self._found(name) is cls)
+        return next(named, cls.__name__)
 
-    def _is(self, name: str, cls: type) -> bool:
-        """Whether an added member is a class, whichever module it was imported from."""
+    def _found(self, name: str) -> type[Kind] | None:
+        """The class of a name, or None if it cannot be used."""
         try:
-            return self[name] is cls
+            return self[name]
         except OptionError:
-            return False
+            return None
 
     def _loaded(self, entry: "EntryPoint") -> type[Kind]:
         """The class that a package adds: what it raises while it is imported is its own fault."""
         try:
             found: Any = entry.load()
-            if not (isinstance(found, type) and hasattr(found, str(self._method))):
-                raise TypeError(f"a class with {self._method} is wanted")
+            if not (is_dataclass(found) and hasattr(found, str(self._method))):
+                raise TypeError(f"a dataclass with {self._method} is wanted")
         except Exception as error:
             reason = " ".join(f"{type(error).__name__}: {error}".split())
             raise OptionError(

@@ -71,7 +71,7 @@ def draw_sheet(
     # faces count more, as in every other picture
     (alone,) = Attention([Faces()], info, 1, triangles).beside([InShot(frame.index, frame)])
     frame = alone.frame
-    stacks = [stack for name in STYLES for stack in STYLES[name].portraits or (name,)]
+    stacks = [stack for name, cls in STYLES.usable.items() for stack in cls.portraits or (name,)]
     with Device("auto") as device:
         snapshot = _triangulated(frame, device, triangles)
         cells = [_drawn(stack.split(OVER), snapshot, frame, device) for stack in stacks]

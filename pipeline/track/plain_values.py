@@ -85,7 +85,7 @@ def from_plain(cls: type, plain: Any, *, arrays: bool = True) -> Any:
             raise UnknownNameError(f"the field {reprlib.repr(name)} of {cls.__name__}")
     hints = typing.get_type_hints(cls, None, {"np": np})  # which light modules do not import
     values = {}
-    for name in fields.keys() & plain.keys():
+    for name in (name for name in fields if name in plain):
         registry = fields[name].metadata.get("registry")
         try:
             values[name] = _value(hints[name], plain[name], registry, arrays)
