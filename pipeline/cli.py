@@ -157,9 +157,12 @@ def run_join(arguments: argparse.Namespace) -> None:
         arguments: What the user gave.
     """
     from pipeline.commands.join import join_tracks
+    from pipeline.progress import tell
 
     parts = [Path(name) for name in arguments.tracks]
-    join_tracks(parts, Path(arguments.output), overwrite=arguments.overwrite)
+    joined = join_tracks(parts, Path(arguments.output), overwrite=arguments.overwrite)
+    if not arguments.quiet:
+        tell(joined, sys.stderr)
 
 
 def run_info(arguments: argparse.Namespace) -> None:

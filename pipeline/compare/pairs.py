@@ -110,7 +110,7 @@ def _pairs(original: Decoder, result: Decoder) -> Iterator[tuple[Frame, Frame, F
             raise TrimotionError(
                 f"{result.info.path}: its frame {count} is shown at {float(since[1]):.3f} s, "
                 f"that of {original.info.path} at {float(since[0]):.3f} s; "
-                "compare the frames it was made from (--frames)"
+                "say with --frames A-B which frames of the source it shows"
             )
         count += 1
         yield before, after, since[0]
@@ -124,5 +124,5 @@ def _unequal_counts(
     counts = (count, count + rest) if output_is_longer else (count + rest, count)
     return TrimotionError(
         f"{result.info.path}: has {counts[1]} frames, {original.info.path} has {counts[0]}; "
-        "compare the frames it was made from (--frames)"
+        f"say with --frames which of them it shows, such as --frames 0-{counts[1] - 1}"
     )

@@ -18,7 +18,6 @@ from pipeline.look.region_members import followed_shares
 from pipeline.look.rows_around import rows_around
 from pipeline.look.source_pictures import source_pictures
 from pipeline.loop.attention import Attention
-from pipeline.loop.expected_frames import expected_frames
 from pipeline.loop.motion import check_cuts, open_around, with_motion
 from pipeline.loop.shots import with_shots
 from pipeline.loop.threads import Behind, ahead
@@ -31,6 +30,7 @@ from pipeline.track.resume import Past, Reached, open_track, past_of
 from stages.frame import Frame
 from stages.masks.weight_maps import WeightMap
 from stages.media import Decoder, FrameRange, MediaInfo, open_decoder
+from stages.media.expected_frames import expected_frames
 from stages.motion.advect import advect
 from stages.snapshot import Snapshot
 from stages.triangulate import Triangulator

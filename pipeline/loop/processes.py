@@ -93,7 +93,7 @@ def animate_in_parts(job: Job, progress: Progress) -> Animated:
         result,
         seconds=perf_counter() - begun,
         warnings=(*solved.warnings, *result.warnings),
-        notes=(*solved.notes, *result.notes),
+        notes=tuple(dict.fromkeys([*solved.notes, *result.notes])),
     )
 
 
@@ -123,7 +123,8 @@ def solve_in_parts(
     if run.jobs == 1 or (output.resume and output.track.exists()):
         # what is resumed goes on inside a shot
         return solve(options, output, alone, progress, fitted)
-    ranges = plan(options).ranges
+    planned = plan(options)
+    ranges = planned.ranges
     if len(ranges) == 1:
         return solve(options, output, alone, progress, fitted)
     folder = _made_folder(output)
@@ -135,7 +136,7 @@ def solve_in_parts(
     with TrackReader(output.track) as reader:
         mean = float(np.mean([row.rmse for row in reader.rows]))
     shutil.rmtree(folder, ignore_errors=True)
-    notes = list(crew.notes)
+    notes = list(dict.fromkeys([*planned.notes, *crew.notes]))
     if len(ranges) < run.jobs:
         notes.append(f"{len(ranges)} shots: so many processes, not {run.jobs}")
     return Animated(crew.done, perf_counter() - begun, mean, tuple(crew.warnings), tuple(notes))

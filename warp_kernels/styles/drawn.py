@@ -61,12 +61,12 @@ class Drawn(Style):
             "range": (-180.0, 180.0),
         },
     )
-    ink: str = field(default="#24242c", metadata={"help": "#rgb or #rrggbb", "form": "color"})
+    ink: str = field(
+        default="#24242c", metadata={"help": "#rgb, #rrggbb or a name", "form": "color"}
+    )
     paper: str = field(
         default="triangle",
-        metadata={
-            "help": "triangle: each its own colour; #rgb or #rrggbb: a sheet; none: strokes alone"
-        },
+        metadata={"help": "triangle: each its own colour; a colour: a sheet; none: strokes alone"},
     )
     contrast: float = field(
         default=0.5,

@@ -20,7 +20,9 @@ class Paper(Style):
     Deviation: not in the paper.
     """
 
-    color: str = field(default="#f3eee3", metadata={"help": "#rgb or #rrggbb", "form": "color"})
+    color: str = field(
+        default="#f3eee3", metadata={"help": "#rgb, #rrggbb or a name", "form": "color"}
+    )
     grain: float = field(
         default=0.4, metadata={"help": "contrast of the grain", "range": (0.0, 4.0)}
     )
