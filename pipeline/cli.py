@@ -20,7 +20,7 @@ from pipeline.commands.grammar import build_parser
 
 if TYPE_CHECKING:
     from pipeline.job import Job
-    from pipeline.loop.animate import Animated
+    from pipeline.loop.result import Animated
     from pipeline.progress import Progress
 
 INTERRUPTED = 130
@@ -81,14 +81,9 @@ def run_animate(arguments: argparse.Namespace) -> None:
     """
     job = _job(arguments)
     with _progress(arguments) as progress:
-        if job.run.jobs > 1 or job.look.followed:
-            from pipeline.loop.processes import animate_in_parts
+        from pipeline.loop.animate import animate
 
-            _tell(progress, animate_in_parts(job, progress), job.output.path)
-        else:
-            from pipeline.loop.animate import animate
-
-            _tell(progress, animate(job, progress), job.output.path)
+        _tell(progress, animate(job, progress), job.output.path)
 
 
 def run_solve(arguments: argparse.Namespace) -> None:
@@ -99,16 +94,10 @@ def run_solve(arguments: argparse.Namespace) -> None:
     """
     # Looks, which a preset may hold, do not belong to a track.
     job = _job(arguments, track=arguments.output, output=None, styles=(), regions=())
-    parts = job.solve, job.output, job.run
     with _progress(arguments) as progress:
-        if job.run.jobs > 1:
-            from pipeline.loop.processes import solve_in_parts
+        from pipeline.loop.animate import solve
 
-            _tell(progress, solve_in_parts(*parts, progress), job.output.track)
-        else:
-            from pipeline.loop.animate import solve
-
-            _tell(progress, solve(*parts, progress), job.output.track)
+        _tell(progress, solve(job.solve, job.output, job.run, progress), job.output.track)
 
 
 def run_render(arguments: argparse.Namespace) -> None:
@@ -123,7 +112,7 @@ def run_render(arguments: argparse.Namespace) -> None:
     source = None if arguments.source is None else Path(arguments.source)
     wanted = build_render(_given(arguments), path)
     from pipeline.look.render_job import render_job
-    from pipeline.loop.animate import render
+    from pipeline.loop.render import render
     from pipeline.track import TrackReader
 
     with TrackReader(path) as track, _progress(arguments) as progress:

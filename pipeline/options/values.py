@@ -10,9 +10,9 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any, NamedTuple, get_origin
 
+from pipeline.options.output_size import FORM, parse_size
 from warp_kernels.errors import OptionError
 
-_SIZE = re.compile(r"(\d{1,9})[xX](\d{1,9})")
 _SWITCHES = {"true": True, "yes": True, "1": True, "false": False, "no": False, "0": False}
 
 
@@ -29,13 +29,6 @@ def _finite(text: str) -> float:
     if not math.isfinite(number):
         raise ValueError(text)
     return number
-
-
-def _size(text: str) -> tuple[int, int]:
-    match = _SIZE.fullmatch(text)
-    if match is None:
-        raise ValueError(text)
-    return int(match[1]), int(match[2])
 
 
 def _picture(name: str) -> Any:
@@ -57,7 +50,7 @@ _RULES = {
     "int": _Rule(int, "a whole number", "one such as 12"),
     "float": _Rule(_finite, "a number", "one such as 0.5"),
     "Fraction": _Rule(Fraction, "a rate", "one such as 24 or 30000/1001"),
-    "tuple[int, int]": _Rule(_size, "a size", "WxH such as 1280x720"),
+    "tuple[int, int]": _Rule(parse_size, "a size", FORM),
     "Path": _Rule(Path),
     "ndarray": _Rule(_picture),
 }

@@ -117,6 +117,12 @@ class Drawn(Style):
         """Whether there is paper."""
         return self.paper != NO_PAPER
 
+    @property
+    def ground(self) -> str | None:
+        """The sheet, if all triangles are one."""
+        is_sheet = self.paper not in (NO_PAPER, OWN_PAPER) and self.blend == "normal"
+        return self.paper if is_sheet else None
+
     def numbers(self) -> tuple[float, ...]:
         """In the order of `tones.strokes`."""
         from warp_kernels.styles.tones.tonal_art_map import SPACING

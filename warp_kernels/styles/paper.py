@@ -43,6 +43,11 @@ class Paper(Style):
     prepare = Imported("warp_kernels.styles.shaders.paper:prepare_paper")
     portraits: ClassVar[tuple[str, ...]] = ("flat + paper:color=#fff,blend=multiply",)
 
+    @property
+    def ground(self) -> str | None:
+        """The paper, unless it only gives its grain to what lies below."""
+        return self.color if self.blend == "normal" else None
+
     def numbers(self) -> tuple[float, ...]:
         """Red, green, blue [code values], grain, size, sheets."""
         return (*parse_color(self.color), self.grain, self.size, self.sheets)
