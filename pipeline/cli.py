@@ -10,7 +10,7 @@ import signal
 import sys
 import threading
 import traceback
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
@@ -31,11 +31,12 @@ class Terminated(BaseException):
     """SIGTERM, raised in the main thread so that what is open cleans up after itself."""
 
 
-def main(argv: Sequence[str] | None = None) -> int:
+def main(argv: Sequence[str] | None = None, commands: "Mapping[str, Command] | None" = None) -> int:
     """Run the command line.
 
     Args:
         argv: Arguments without the program's name; None for those of the process.
+        commands: What each command runs; `COMMANDS` if left out.
 
     Returns:
         0 done, 1 failed, 2 usage, 3 input unreadable, 4 output cannot be written, 130 or 143
@@ -54,7 +55,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         return request.code if isinstance(request.code, int) else 2
     try:
         with _terminable(), _piped(arguments):
-            COMMANDS[arguments.command](arguments)
+            (commands or COMMANDS)[arguments.command](arguments)
             sys.stdout.flush()
     except BaseException as error:  # one place where every failure becomes a line and a code
         if arguments.debug:
@@ -218,7 +219,9 @@ def run_help(arguments: argparse.Namespace) -> None:
         raise OptionError(f"help {arguments.topic}: no such command; {similar}")
 
 
-COMMANDS: dict[str, Callable[[argparse.Namespace], None]] = {
+Command = Callable[[argparse.Namespace], None]
+"""A command is given what the user gave."""
+COMMANDS: dict[str, Command] = {
     "animate": run_animate,
     "solve": run_solve,
     "render": run_render,
