@@ -74,6 +74,15 @@ class Progress:
             rmse: Its error [code values].
         """
 
+    def moment(self, done: int, total: int, frame: int) -> None:
+        """Tell that a moment of a preview is finished.
+
+        Args:
+            done: Number of moments finished so far.
+            total: Number of moments in all.
+            frame: Number of its frame.
+        """
+
     def note(self, text: str) -> None:
         """Tell a choice that was made, if the user wants to know."""
         if self._verbose:
@@ -166,6 +175,10 @@ class PlainProgress(Progress):
         """Tell about a frame as often as about others."""
         self._tell(done, total, f"rmse {rmse:.2f}")
 
+    def moment(self, done: int, total: int, frame: int) -> None:
+        """Tell about a moment."""
+        self._print(f"moment {done}/{total}  frame {frame}")
+
     def _tell(self, done: int, total: int | None, figures: str) -> None:
         now = time.perf_counter()
         if now - self._told < PLAIN_INTERVAL and done != total:
@@ -201,6 +214,10 @@ class BarProgress(Progress):
     def compared(self, done: int, total: int | None, rmse: float) -> None:
         """Move the bar."""
         self._move(done, total, f"rmse {rmse:.2f}")
+
+    def moment(self, done: int, total: int, frame: int) -> None:
+        """Tell about a moment: there are few."""
+        self._print(f"moment {done}/{total}  frame {frame}")
 
     def _move(self, done: int, total: int | None, figures: str) -> None:
         try:

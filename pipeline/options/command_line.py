@@ -144,6 +144,7 @@ COMMAND_OPTIONS: dict[str, Callable[[Option], bool]] = {
         (option.group in ("range", "look", "output") and option.dest not in _SOURCE_ONLY)
         or option.dest in ("device", "threads")
     ),
+    "preview": lambda option: option.dest not in ("track", "resume", "jobs"),
     "plan": lambda option: option.group == "range" or option.dest == "cuts",
     "measure": lambda option: option in RANGE_OPTIONS,
 }
@@ -179,13 +180,14 @@ def add_job_options(
 
 
 def commands_with(flag: str) -> list[str]:
-    """Commands that have an option of a job.
+    """Commands that have an option of a job; `preview` has those of `animate`.
 
     Args:
         flag: Its name without dashes in front.
     """
     found = [option for option in job_options() if option.flag == flag]
-    return [name for name, has in COMMAND_OPTIONS.items() if any(map(has, found))]
+    owners = [name for name, has in COMMAND_OPTIONS.items() if any(map(has, found))]
+    return [name for name in owners if name != "preview"]
 
 
 def registry_help() -> str:
