@@ -228,7 +228,7 @@ class Triangulator:
         spring = SPRING * self._rmse(seed.mesh) ** 2
         unrest = self._unrest(seed, earlier)
         if unrest is not None:
-            seed = replace(seed, trust=seed.trust * (1.0 - unrest.values))
+            seed = unrest.freed(seed)
         mesh = self._follow(seed.mesh, seed, spring, each, frame.weights)
         if unrest is not None:
             renewing = int(RENEWED * rounds)
