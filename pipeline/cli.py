@@ -19,8 +19,8 @@ from pipeline.commands.crash_watch import watch_for_crashes
 from pipeline.commands.grammar import build_parser
 
 if TYPE_CHECKING:
-    from pipeline.job import Job
     from pipeline.loop.result import Animated
+    from pipeline.options.job import Job
     from pipeline.progress import Progress
 
 INTERRUPTED = 130

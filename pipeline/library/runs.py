@@ -24,8 +24,8 @@ from pipeline.progress import Progress, Summary
 
 if TYPE_CHECKING:
     from pipeline.compare.report import Report
-    from pipeline.job import Job
     from pipeline.loop.result import Animated
+    from pipeline.options.job import Job
 
 
 @with_keywords("animate")

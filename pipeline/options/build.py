@@ -6,8 +6,8 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any, TypeVar
 
-from pipeline.job import Job
 from pipeline.options.command_line import job_options
+from pipeline.options.job import Job
 from pipeline.options.look import Look
 from pipeline.options.members import parse_member, parse_region
 from pipeline.options.output import Output
