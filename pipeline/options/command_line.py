@@ -96,9 +96,7 @@ class Option:
     def value(self, given: object, what: str, sign: str = " = ") -> object:
         """The value that the command line would give for one of a file or a program.
 
-        Args:
-            given: A number, a text, true or false, or a list of these if it is repeatable.
-            what: Where it stands, for messages, with a sign between that and the value.
+        Messages begin with `what`, where it stands, and have a sign between that and the value.
 
         Raises:
             OptionError: If the value is of another kind, or none that the option may have.

@@ -14,12 +14,7 @@ from warp_kernels.errors import OptionError
 
 
 def parse_member(flag: str, text: str, registry: Mapping[str, type]) -> Any:
-    """Make a member of a registry.
-
-    Args:
-        flag: The option, for messages, such as `--style`.
-        text: `NAME`, `NAME:KEY=VALUE,...`; a value without a key is the first parameter's.
-        registry: Classes by name.
+    """Make a member of a registry from `NAME` or `NAME:KEY=VALUE,...`; messages name the option.
 
     Raises:
         OptionError: If the name, a parameter or a value is not allowed.
@@ -91,7 +86,7 @@ def written(name: str, cls: Any) -> str:
 
 
 def _pairs(rest: str, kinds: Mapping[str, str]) -> list[tuple[str, str]]:
-    """Split what follows a name into keys and values."""
+    """Keys and values of what follows a name; the first value may be that of a text or a file."""
     first = next(iter(kinds), None)
     takes_bare = first is not None and kinds[first].removesuffix(" | None") in NAMES
     if first is not None and takes_bare and Path(rest).is_file():

@@ -10,7 +10,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any, get_origin
 
-from pipeline.options.output_size import FORM, parse_size
+from stages.look.output_size import FORM, parse_size
 
 _SWITCHES = {"true": True, "yes": True, "1": True, "false": False, "no": False, "0": False}
 
