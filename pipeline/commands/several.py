@@ -98,5 +98,5 @@ def _check_shared(arguments: argparse.Namespace) -> None:
         OptionError: If a track is named for all.
     """
     track = None if arguments.command == "render" else getattr(arguments, "track", None)
-    if track is not None and not (os.path.isdir(track) or track.endswith(("/", os.sep))):
+    if track is not None and not os.path.isdir(track):
         raise OptionError(f"--track {track}: several inputs: name a folder for them, {track}/")
