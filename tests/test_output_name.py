@@ -10,9 +10,9 @@ import pytest
 from test_encode import ROOT
 
 from pipeline.cli import main
+from pipeline.options.output_name import FILMS, STILLS, output_in
 from stages.media import open_decoder, probe
 from stages.media.naming import STILL_ENDINGS
-from stages.media.output_name import FILMS, STILLS, output_in
 from stages.media.writing.codecs import CONTAINERS
 
 QUICK = ["--triangles", "20", "--iterations", "2", "--frame-iterations", "1", "--progress", "none"]

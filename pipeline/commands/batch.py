@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from stages.media.output_name import FILMS, OTHER_FILMS, OTHER_STILLS, STILLS, output_in
+from pipeline.options.output_name import FILMS, OTHER_FILMS, OTHER_STILLS, STILLS, output_in
 from warp_kernels.errors import MediaError, OptionError, OutputError
 
 TRACKS = frozenset({".mtrk"})

@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from pipeline.commands.inputs import PIPE, is_pipe
-from stages.media.output_name import is_still
+from pipeline.options.output_name import is_still
 from warp_kernels.errors import MediaError, OptionError
 
 FORMATS = {"solve": ".mtrk", "join": ".mtrk"}

@@ -10,10 +10,10 @@ from pipeline.options.command_line import job_options
 from pipeline.options.look import Look
 from pipeline.options.members import parse_member, parse_region
 from pipeline.options.output import Output
+from pipeline.options.output_name import output_in
 from pipeline.options.run import Run
 from pipeline.options.solve_options import SolveOptions
 from stages.media.frame_range import FrameRange, parse_time
-from stages.media.output_name import output_in
 from warp_kernels.errors import OptionError
 from warp_kernels.styles import STYLES
 
