@@ -157,6 +157,21 @@ def run_styles(arguments: argparse.Namespace) -> None:
     draw_sheet(arguments.picture, arguments.sheet, triangles=triangles, overwrite=overwrite)
 
 
+def run_completion(arguments: argparse.Namespace) -> None:
+    """Print the script by which a shell completes the command line.
+
+    Args:
+        arguments: What the user gave.
+    """
+    from pipeline.commands.completion import SHELLS
+    from pipeline.commands.completion.words import words_of
+    from warp_kernels.styles import STYLES
+
+    known = build_parser().commands()
+    listed = {"help": tuple(known), "styles": tuple(STYLES)}
+    print(SHELLS[arguments.shell](words_of(known, listed)), end="")
+
+
 def run_help(arguments: argparse.Namespace) -> None:
     """Print the help of the program or of a command.
 
@@ -188,6 +203,7 @@ COMMANDS: dict[str, Command] = {
     "info": run_info,
     "measure": run_measure,
     "styles": run_styles,
+    "completion": run_completion,
     "help": run_help,
 }
 """What each subcommand runs."""

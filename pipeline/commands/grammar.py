@@ -30,6 +30,7 @@ commands:
   info FILE                  what a file is: a source or a mesh track
   measure SOURCE OUTPUT      how close an output is to its source, and how coherent
   styles [NAME]              all styles and their parameters, or one; --sheet draws them
+  completion bash|zsh|fish   a script by which a shell completes all of this
   help [COMMAND]             this text, or the options of a command
 
 trimotion COMMAND --help tells the options of a command, too.
@@ -108,6 +109,7 @@ def build_parser() -> OneLineParser:
     _add_info(commands)
     _add_measure(commands)
     _add_styles(commands)
+    _add_completion(commands)
     _add_help(commands)
     return parser
 
@@ -288,6 +290,18 @@ def _add_styles(commands: Any) -> None:
     )
     parser.add_argument("--overwrite", action="store_true", help="replace an existing sheet")
     parser.add_argument("--json", action="store_true", help="print JSON")
+
+
+def _add_completion(commands: Any) -> None:
+    parser = _command(
+        commands,
+        "completion",
+        "Print a script by which a shell completes commands, options, values and files.",
+        "trimotion completion bash|zsh|fish",
+    )
+    parser.add_argument(
+        "shell", metavar="bash|zsh|fish", choices=("bash", "zsh", "fish"), help="the shell"
+    )
 
 
 def _add_help(commands: Any) -> None:

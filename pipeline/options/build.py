@@ -5,8 +5,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, TypeVar
 
-from pipeline.job import Job
 from pipeline.options.command_line import job_options
+from pipeline.options.job import Job
 from pipeline.options.look import Look
 from pipeline.options.members import parse_member, parse_region
 from pipeline.options.output import Output
@@ -27,9 +27,12 @@ def build_job(given: Mapping[str, Any]) -> Job:
     return Job(solve, look, fill(Output, values), fill(Run, values))
 
 
-def build_render(given: Mapping[str, Any], track: Path) -> tuple[FrameRange, Look, Output, Run]:
-    """Make what a track is drawn with; it names the output where that is a folder."""
-    values = values_of({**given, "source": track, "track": None})
+def build_render(
+    given: Mapping[str, Any], track: Path, ending: str
+) -> tuple[FrameRange, Look, Output, Run]:
+    """Make what a track is drawn with; it names the output, with an ending, in a folder."""
+    output = output_in(given["output"], track, ending)
+    values = values_of({**given, "output": str(output), "source": track, "track": None})
     fill(SolveOptions, values)  # a preset may hold such options, and mistakes in them are told
     return values["frame_range"], fill(Look, values), fill(Output, values), fill(Run, values)
 

@@ -51,7 +51,7 @@ class Option:
     default: Any
     """What is taken if it is not given, as it would be written."""
     metadata: Mapping[str, Any]
-    """What the field says; see `pipeline.job`."""
+    """What the field says; see `pipeline.options.job`."""
 
     @property
     def is_switch(self) -> bool:

@@ -19,7 +19,7 @@ from pipeline.options.look import Look
 from pipeline.options.output import Output
 from pipeline.options.run import Run
 from pipeline.options.solve_options import SolveOptions
-from warp_kernels.energy.color_model import ColorModel
+from warp_kernels.color_model import ColorModel
 
 
 @dataclass(frozen=True)
