@@ -10,8 +10,8 @@ from pipeline import cli
 from pipeline.cli import main
 from pipeline.commands.completion import SHELLS
 from pipeline.commands.grammar import build_parser
-from pipeline.options.output_size import NAMED_SIZES
 from stages.focus import FOCI
+from stages.look.output_size import NAMED_SIZES
 from warp_kernels.styles import STYLES
 
 # (line, the word that is completed, some of what is offered, what is not)

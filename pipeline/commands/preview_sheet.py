@@ -4,13 +4,10 @@ import json
 from fractions import Fraction
 from pathlib import Path
 
-import cv2
-import numpy as np
-
-from pipeline.job import Job
 from pipeline.loop.preview import Moment, Preview, preview
+from pipeline.options.job import Job
 from pipeline.progress import Progress
-from stages.look.sheet import sheet_of
+from stages.look.sheet import of_width, sheet_of
 from stages.media import EncodeOptions, FrameRange, check_output, open_encoder, probe
 from warp_kernels.errors import OptionError
 
@@ -40,7 +37,7 @@ def make_preview(job: Job, progress: Progress) -> Preview:
     if plan.container is not None or plan.pattern is not None:
         raise OptionError(f"-o {path}: a preview is one picture; name it .png or .jpg")
     found = preview(job, progress)
-    cells = _alike([moment.pixels for moment in found.moments])
+    cells = of_width([moment.pixels for moment in found.moments], WIDTH)
     sheet = sheet_of(cells, [_caption(moment) for moment in found.moments], len(cells))
     size = (sheet.shape[1], sheet.shape[0])
     with open_encoder(path, info, size, encode, ONE) as out:
@@ -77,13 +74,6 @@ def as_json(found: Preview, output: Path) -> str:
         "seconds_later": round(found.later, 4),
     }
     return json.dumps(figures)
-
-
-def _alike(pictures: list[np.ndarray]) -> list[np.ndarray]:
-    """Pictures of the sheet's width, all of one size."""
-    height, width = pictures[0].shape[:2]
-    size = (WIDTH, max(1, round(height * WIDTH / width)))
-    return [cv2.resize(picture, size, interpolation=cv2.INTER_AREA) for picture in pictures]
 
 
 def _caption(moment: Moment) -> str:

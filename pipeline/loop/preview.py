@@ -14,8 +14,8 @@ from time import perf_counter
 
 import numpy as np
 
-from pipeline.job import Job
 from pipeline.loop.animate import animate
+from pipeline.options.job import Job
 from pipeline.options.output import Output
 from pipeline.progress import Progress
 from stages.media import FrameRange, MediaInfo, count_frames, open_decoder, probe
