@@ -54,6 +54,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         return request.code if isinstance(request.code, int) else 2
     try:
         with _terminable(), _piped(arguments):
+            _say_at_once(arguments)
             COMMANDS[arguments.command](arguments)
             sys.stdout.flush()
     except BaseException as error:  # one place where every failure becomes a line and a code
@@ -61,6 +62,17 @@ def main(argv: Sequence[str] | None = None) -> int:
             traceback.print_exc()
         return _report(error, arguments)
     return 0
+
+
+def _say_at_once(arguments: argparse.Namespace) -> None:
+    """On a first run, say that kernels will be compiled, before what takes a second to import."""
+    from warp_kernels.device.cache_place import is_first_run
+    from warp_kernels.device.early_start import start_early
+
+    if arguments.command in COMPILING and is_first_run():
+        with _progress(arguments) as progress:
+            progress.kernels(0, None)
+        start_early(arguments.command, getattr(arguments, "device", "auto"))
 
 
 def _piped(arguments: argparse.Namespace) -> AbstractContextManager[None]:
@@ -237,6 +249,9 @@ COMMANDS: dict[str, Callable[[argparse.Namespace], None]] = {
     "help": run_help,
 }
 """What each subcommand runs."""
+
+COMPILING = ("animate", "solve", "render")
+"""Those that always launch kernels."""
 
 
 def _job(arguments: argparse.Namespace, **fixed: object) -> "Job":

@@ -208,7 +208,9 @@ class _Crew:
             except Empty:
                 self._look_after()
                 continue
-            if kind == "frame":
+            if kind == "kernels":
+                self._progress.kernels(*values)
+            elif kind == "frame":
                 self.done += 1
                 self._progress.frame(self._found + self.done, self._total, *values)
             elif kind == "error":
@@ -241,6 +243,10 @@ class _Halves(Progress):
         """The first pass is over."""
         self._is_second = True
 
+    def kernels(self, done: int, total: int | None) -> None:
+        """Tell how far compiling is."""
+        self._whole.kernels(done, total)
+
     def frame(self, done: int, total: int | None, triangles: int, rmse: float) -> None:
         """Tell of a frame whenever two halves are finished."""
         together = done if total is None or not self._is_second else done + total
@@ -261,6 +267,10 @@ class _Reporter(Progress):
         """Tell that a frame is finished."""
         _watch(self._parent)
         self._reports.put(("frame", triangles, rmse))
+
+    def kernels(self, done: int, total: int | None) -> None:
+        """Tell how far compiling is."""
+        self._reports.put(("kernels", done, total))
 
 
 def _watch(parent: int) -> None:
