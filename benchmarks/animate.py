@@ -20,6 +20,7 @@ from typing import Any
 from timing import machine, program, table
 
 import pipeline.loop.animate
+import pipeline.loop.convert
 from pipeline.job import Job
 from pipeline.options.output import Output
 from pipeline.options.run import Run
@@ -37,7 +38,7 @@ DEFAULT_CLIP = Path(__file__).parents[1] / "sample_videos" / "bigbuckbunny.mp4"
 WATCHED: tuple[tuple[str, type | ModuleType, str], ...] = (
     ("decode", Decoder, "__next__"),
     ("flow", Dis, "estimate"),
-    ("advect", pipeline.loop.animate, "advect"),
+    ("advect", pipeline.loop.convert, "advect"),
     ("triangulate, first", Triangulator, "first"),
     ("triangulate, next", Triangulator, "next"),
     ("render", Renderer, "render"),

@@ -43,16 +43,16 @@ ROWS = "pipeline/track/reader.py"
 MUTANTS = (
     Mutant(
         "same picture is solved again",
-        "pipeline/loop/animate.py",
-        "step.repeats and not options.maps",
-        "False",
+        "pipeline/loop/motion.py",
+        "is_same = passage.is_still and",
+        "is_same = False and",
         "tests/test_track.py -k same_picture",
     ),
     Mutant(
         "same picture keeps its mesh whatever its weights",
-        "pipeline/loop/animate.py",
-        "step.repeats and not options.maps",
-        "step.repeats",
+        "pipeline/loop/motion.py",
+        "passage.is_still and not options.maps and",
+        "passage.is_still and",
         "tests/test_track.py -k same_picture",
     ),
     Mutant(
@@ -109,7 +109,7 @@ MUTANTS = (
         "stages/validate.py",
         "<= READ_TOLERANCE * domain",
         "<= domain",
-        BAD,
+        f"{BAD} -k another_picture",
     ),
     Mutant("colours of no number", "stages/validate.py", "colors.max() < LARGEST", "True", BAD),
     Mutant("counts below zero", "stages/validate.py", "snapshot.counts.min() < 0", "False", BAD),

@@ -10,7 +10,7 @@ import signal
 import sys
 import threading
 import traceback
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
@@ -20,7 +20,7 @@ from pipeline.commands.grammar import build_parser
 
 if TYPE_CHECKING:
     from pipeline.job import Job
-    from pipeline.loop.animate import Animated
+    from pipeline.loop.result import Animated
     from pipeline.progress import Progress
 
 INTERRUPTED = 130
@@ -31,11 +31,12 @@ class Terminated(BaseException):
     """SIGTERM, raised in the main thread so that what is open cleans up after itself."""
 
 
-def main(argv: Sequence[str] | None = None) -> int:
+def main(argv: Sequence[str] | None = None, commands: "Mapping[str, Command] | None" = None) -> int:
     """Run the command line.
 
     Args:
         argv: Arguments without the program's name; None for those of the process.
+        commands: What each command runs; `COMMANDS` if left out.
 
     Returns:
         0 done, 1 failed, 2 usage, 3 input unreadable, 4 output cannot be written, 130 or 143
@@ -54,8 +55,9 @@ def main(argv: Sequence[str] | None = None) -> int:
         return request.code if isinstance(request.code, int) else 2
     try:
         with _terminable(), _piped(arguments):
-            _say_at_once(arguments)
-            COMMANDS[arguments.command](arguments)
+            if commands is None:
+                _say_at_once(arguments)
+            (commands or COMMANDS)[arguments.command](arguments)
             sys.stdout.flush()
     except BaseException as error:  # one place where every failure becomes a line and a code
         if arguments.debug:
@@ -93,14 +95,9 @@ def run_animate(arguments: argparse.Namespace) -> None:
     """
     job = _job(arguments)
     with _progress(arguments) as progress:
-        if job.run.jobs > 1 or job.look.followed:
-            from pipeline.loop.processes import animate_in_parts
+        from pipeline.loop.animate import animate
 
-            _tell(progress, animate_in_parts(job, progress), job.output.path)
-        else:
-            from pipeline.loop.animate import animate
-
-            _tell(progress, animate(job, progress), job.output.path)
+        _tell(progress, animate(job, progress), job.output.path)
 
 
 def run_solve(arguments: argparse.Namespace) -> None:
@@ -111,16 +108,10 @@ def run_solve(arguments: argparse.Namespace) -> None:
     """
     # Looks, which a preset may hold, do not belong to a track.
     job = _job(arguments, track=arguments.output, output=None, styles=(), regions=())
-    parts = job.solve, job.output, job.run
     with _progress(arguments) as progress:
-        if job.run.jobs > 1:
-            from pipeline.loop.processes import solve_in_parts
+        from pipeline.loop.animate import solve
 
-            _tell(progress, solve_in_parts(*parts, progress), job.output.track)
-        else:
-            from pipeline.loop.animate import solve
-
-            _tell(progress, solve(*parts, progress), job.output.track)
+        _tell(progress, solve(job.solve, job.output, job.run, progress), job.output.track)
 
 
 def run_render(arguments: argparse.Namespace) -> None:
@@ -135,7 +126,7 @@ def run_render(arguments: argparse.Namespace) -> None:
     source = None if arguments.source is None else Path(arguments.source)
     wanted = build_render(_given(arguments), path)
     from pipeline.look.render_job import render_job
-    from pipeline.loop.animate import render
+    from pipeline.loop.render import render
     from pipeline.track import TrackReader
 
     with TrackReader(path) as track, _progress(arguments) as progress:
@@ -168,9 +159,12 @@ def run_join(arguments: argparse.Namespace) -> None:
         arguments: What the user gave.
     """
     from pipeline.commands.join import join_tracks
+    from pipeline.progress import tell
 
     parts = [Path(name) for name in arguments.tracks]
-    join_tracks(parts, Path(arguments.output), overwrite=arguments.overwrite)
+    joined = join_tracks(parts, Path(arguments.output), overwrite=arguments.overwrite)
+    if not arguments.quiet:
+        tell(joined, sys.stderr)
 
 
 def run_info(arguments: argparse.Namespace) -> None:
@@ -237,7 +231,9 @@ def run_help(arguments: argparse.Namespace) -> None:
         raise OptionError(f"help {arguments.topic}: no such command; {similar}")
 
 
-COMMANDS: dict[str, Callable[[argparse.Namespace], None]] = {
+Command = Callable[[argparse.Namespace], None]
+"""A command is given what the user gave."""
+COMMANDS: dict[str, Command] = {
     "animate": run_animate,
     "solve": run_solve,
     "render": run_render,

@@ -2,56 +2,42 @@
 
 import threading
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from itertools import pairwise
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import av
 import numpy as np
 import pytest
 from scipy.ndimage import gaussian_filter
 
-import pipeline.look.drawing
-import pipeline.loop.animate
 from pipeline.job import Job
-from pipeline.loop.animate import Animated, animate
+from pipeline.loop.animate import animate
+from pipeline.loop.result import Animated
 from pipeline.progress import Progress
+from pipeline.track import TrackReader
 from sample_videos.make_shapes import CUT_FRAME, FRAME_COUNT
-from stages.frame import Frame
-from stages.layouts import Layout
+from stages.flows.dis import Dis
+from stages.flows.field import FlowField
+from stages.flows.view import View
+from stages.layouts.grid import Grid
+from stages.masks.regions import Region
 from stages.media import FrameRange, open_decoder
-from stages.motion.advect import Carried
+from stages.mesh import Mesh
 from stages.snapshot import Snapshot
 from stages.topology.refine import RefineOptions
-from stages.triangulate import TriangulateOptions, Triangulator
+from stages.triangulate import TriangulateOptions
 from stages.validate import assert_valid
 from tests import media_samples as samples
 from tests.jobs import changed, job_of
 from tests.kernel_samples import waves
-from warp_kernels.errors import OptionError, OutputError
+from warp_kernels.errors import MediaError, OptionError, OutputError
 from warp_kernels.styles import STYLES
 
 SHAPES = Path(__file__).parents[1] / "sample_videos" / "shapes.mp4"
 QUICK = TriangulateOptions(iterations=40, frame_iterations=6, refine=RefineOptions(triangles=120))
-
-
-class RecordingTriangulator(Triangulator):
-    """Keeps what it made, and which frames it made from scratch."""
-
-    snapshots: list[Snapshot]
-    first_frames: list[int]
-
-    def first(self, frame: Frame, layout: Layout, rng: np.random.Generator) -> Snapshot:
-        """Triangulate from scratch and keep the result."""
-        self.first_frames.append(frame.index)
-        self.snapshots.append(super().first(frame, layout, rng))
-        return self.snapshots[-1]
-
-    def next(self, frame: Frame, seed: Carried, earlier: Snapshot | None = None) -> Snapshot:
-        """Triangulate a later frame and keep the result."""
-        self.snapshots.append(super().next(frame, seed, earlier))
-        return self.snapshots[-1]
 
 
 @dataclass(frozen=True)
@@ -61,18 +47,21 @@ class Recorded:
     job: Job
     result: Animated
     snapshots: list[Snapshot]
-    first_frames: list[int]
+    shots: list[int]
+    """The frames with which shots begin."""
 
 
-def run(job: Job, progress: Progress | None = None) -> Recorded:
-    """Run a job and keep its snapshots."""
-    kept = type("Kept", (RecordingTriangulator,), {"snapshots": [], "first_frames": []})
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(pipeline.loop.animate, "Triangulator", kept)
-        result = animate(job, progress or Progress())
-    for snapshot in kept.snapshots:
+def run(job: Job) -> Recorded:
+    """Run a job and keep its snapshots: what its track holds."""
+    with TemporaryDirectory() as folder:
+        track = Path(folder) / "t.mtrk"
+        result = animate(changed(job, track=track), Progress())
+        with TrackReader(track) as reader:
+            snapshots = list(reader.snapshots(reader.rows))
+            shots = list(reader.shots)
+    for snapshot in snapshots:
         assert_valid(snapshot.mesh)
-    return Recorded(job, result, kept.snapshots, kept.first_frames)
+    return Recorded(job, result, snapshots, shots)
 
 
 @pytest.fixture(autouse=True)
@@ -139,7 +128,7 @@ def test_sample_has_the_wanted_triangles(shapes: Recorded) -> None:
 
 def test_sample_restarts_at_its_cut(shapes: Recorded) -> None:
     """The layout is made anew for the first frame and at the hard cut, nowhere else."""
-    assert shapes.first_frames == [0, CUT_FRAME]
+    assert shapes.shots == [0, CUT_FRAME]
 
 
 def test_sample_looks_like_its_source(shapes: Recorded) -> None:
@@ -172,9 +161,13 @@ def test_uneven_times_are_kept(clip: Path, tmp_path: Path) -> None:
 
 
 def test_independent_starts_every_frame_anew(clip: Path, tmp_path: Path) -> None:
-    """The baseline knows no frame before."""
-    done = run(job_of(clip, tmp_path / "out.mp4", triangulate=QUICK, independent=True))
-    assert done.first_frames == list(range(6))
+    """The baseline knows no frame before: each is what it would be if it were alone."""
+    job = job_of(clip, tmp_path / "out.mp4", triangulate=QUICK, independent=True)
+    together = run(job).snapshots
+    for number in (0, 3, 5):
+        only = FrameRange(number, number)
+        (alone,) = run(changed(job, path=tmp_path / f"{number}.mp4", frame_range=only)).snapshots
+        np.testing.assert_array_equal(alone.mesh.vertices, together[number].mesh.vertices)
 
 
 def test_part_of_a_clip(clip: Path, tmp_path: Path) -> None:
@@ -191,8 +184,8 @@ def test_listed_cuts_are_obeyed(clip: Path, tmp_path: Path) -> None:
     cuts = tmp_path / "cuts.json"
     cuts.write_text("[2, 5]")
     job = job_of(clip, tmp_path / "a.mp4", triangulate=QUICK, cuts=str(cuts))
-    assert run(job).first_frames == [0, 2, 5]
-    assert run(changed(job, path=tmp_path / "b.mp4", cuts="none")).first_frames == [0]
+    assert run(job).shots == [0, 2, 5]
+    assert run(changed(job, path=tmp_path / "b.mp4", cuts="none")).shots == [0]
 
 
 def test_still_becomes_a_still(tmp_path: Path) -> None:
@@ -248,31 +241,61 @@ class Planted(Progress):
 def test_interruption_leaves_nothing(clip: Path, tmp_path: Path) -> None:
     """Ctrl-C in the middle: no output, no temporary file, no thread."""
     with pytest.raises(KeyboardInterrupt):
-        run(job_of(clip, tmp_path / "out.mp4", triangulate=QUICK), Planted())
+        animate(job_of(clip, tmp_path / "out.mp4", triangulate=QUICK), Planted())
     assert leftovers(tmp_path, clip) == []
 
 
-@pytest.mark.parametrize("place", ["Renderer.render", "Triangulator.next", "Dis.estimate"])
+@dataclass(frozen=True)
+class FailingFlow(Dis):
+    """Fails between the second and the third frame, which happens ahead of the solution."""
+
+    calls: list[int] = field(default_factory=list)
+
+    def estimate(self, earlier: View, later: View) -> FlowField:
+        """Fail when it is asked for the second time."""
+        self.calls.append(1)
+        if len(self.calls) == 2:
+            raise RuntimeError("planted")
+        return super().estimate(earlier, later)
+
+
+@dataclass(frozen=True)
+class FailingLayout(Grid):
+    """Fails where a second shot begins, which is where frames are solved."""
+
+    calls: list[int] = field(default_factory=list)
+
+    def build(self, pixels: np.ndarray, triangles: int, rng: np.random.Generator) -> Mesh:
+        """Fail when it is asked for the second time."""
+        self.calls.append(1)
+        if len(self.calls) == 2:
+            raise RuntimeError("planted")
+        return super().build(pixels, triangles, rng)
+
+
+@pytest.mark.parametrize("place", ["ahead", "solving"])
 def test_failure_anywhere_leaves_nothing(place: str, clip: Path, tmp_path: Path) -> None:
-    """Drawing, triangulating or estimating motion fails: its own error, and nothing left."""
-    calls = 0
+    """Estimating motion or triangulating fails: its own error, once, and nothing left."""
+    job = job_of(clip, tmp_path / "out.mp4", triangulate=QUICK, layout=Grid())
+    flow, layout = FailingFlow(), FailingLayout()
+    if place == "ahead":
+        job = changed(job, flow=flow)
+    else:
+        (tmp_path / "cuts.txt").write_text("3\n")
+        job = changed(job, layout=layout, cuts=str(tmp_path / "cuts.txt"))
+    with pytest.raises(RuntimeError, match="planted"):
+        animate(job, Progress())
+    assert len(flow.calls) + len(layout.calls) == 2
+    assert leftovers(tmp_path, clip, tmp_path / "cuts.txt") == []
 
-    def fail(*_: object, **__: object) -> None:
-        nonlocal calls
-        calls += 1
-        raise RuntimeError("planted")
 
-    owners = {
-        "Renderer.render": pipeline.look.drawing.Renderer,
-        "Triangulator.next": Triangulator,
-        "Dis.estimate": type(job_of(clip).solve.flow),
-    }
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(owners[place], place.split(".")[1], fail)
-        with pytest.raises(RuntimeError, match="planted"):
-            animate(job_of(clip, tmp_path / "out.mp4", triangulate=QUICK), Progress())
-    assert calls == 1
-    assert leftovers(tmp_path, clip) == []
+def test_failure_of_drawing_leaves_nothing(clip: Path, tmp_path: Path) -> None:
+    """A mask that ends before the clip does is missed behind the solution."""
+    short = samples.write_video(tmp_path / "mask.mp4", [samples.picture(64, 48)] * 2)
+    job = job_of(clip, tmp_path / "out.mp4", triangulate=QUICK)
+    with pytest.raises(MediaError, match="mask for frame 2"):
+        animate(changed(job, regions=(Region(str(short), STYLES["edges"]()),)), Progress())
+    assert leftovers(tmp_path, clip, short) == []
 
 
 def test_existing_output_is_kept(clip: Path, tmp_path: Path) -> None:

@@ -4,6 +4,7 @@ import os
 import subprocess
 import sys
 import tracemalloc
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -12,8 +13,9 @@ from pipeline.cli import main
 from pipeline.track import TrackReader
 from pipeline.track.plain_values import UnknownNameError, from_plain, to_plain
 from stages.layouts.importance import Importance
-from stages.validate import assert_finite, assert_valid
+from stages.validate import InvalidMeshError, assert_finite, assert_sound, assert_valid
 from tests.bad_tracks import NAMES, bomb, copy_of, discard, map_of, plant
+from tests.meshes import HEIGHT, WIDTH, random_mesh
 from tests.tracks import QUICK_FLAGS, solve_to, write_clip
 
 COUNT = 200
@@ -139,6 +141,15 @@ def test_arrays_are_no_larger_than_they_say() -> None:
     tracemalloc.stop()
     assert most < 1 << 20
     assert from_plain(Importance, layout, arrays=False).importance_map is None
+
+
+@pytest.mark.parametrize("size", [(WIDTH + 1, HEIGHT), (WIDTH, HEIGHT + 1), (2 * WIDTH, HEIGHT)])
+def test_mesh_of_another_picture_is_told(size: tuple[int, int]) -> None:
+    """All is in order with it, but a part of the picture is uncovered: a column is enough."""
+    mesh = random_mesh(1)
+    assert_sound(mesh)
+    with pytest.raises(InvalidMeshError, match="over a picture"):
+        assert_sound(replace(mesh, width=size[0], height=size[1]))
 
 
 @pytest.mark.parametrize("change", [{"class": "Popen"}, {"telepathy": 1}])

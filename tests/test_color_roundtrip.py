@@ -42,7 +42,18 @@ def test_untagged_small_video_is_bt601(tmp_path: Path) -> None:
     """Players take BT.601 for small pictures."""
     path = samples.write_video(tmp_path / "a.mkv", [samples.chart(*SD)], codec="ffv1")
     assert np.abs(chart_through(path) - samples.CHART).max() <= 1
-    assert any("bt601" in note for note in probe(path).notes)
+    assert probe(path).color_matrix == "bt601"
+
+
+@pytest.mark.parametrize(
+    ("size", "told"), [((640, 360), 0), ((406, 720), 1), ((1280, 544), 1), ((1280, 720), 0)]
+)
+def test_untagged_colour_is_told_where_players_disagree(
+    tmp_path: Path, size: tuple[int, int], told: int
+) -> None:
+    """Once, and not where every player takes the same matrix."""
+    path = samples.write_video(tmp_path / "a.mkv", [samples.picture(*size)], codec="ffv1")
+    assert sum("untagged" in note for note in probe(path).notes) == told
 
 
 def test_untagged_large_video_is_bt709(tmp_path: Path) -> None:

@@ -21,6 +21,7 @@ import readme_pictures  # noqa: E402
 import style_tables  # noqa: E402
 
 README = ROOT / "README.md"
+OPTIONS = ROOT / "docs" / "options.md"
 MOST_LINES = 250
 """README sells and starts; everything else is a page of docs/."""
 PAGES = doc_commands.pages()
@@ -113,6 +114,22 @@ def test_every_option_is_told_of() -> None:
     assert sorted(options - told) == []
 
 
+def test_options_have_the_defaults_that_their_page_says() -> None:
+    """The help says `(default: 1500)`; the row of the option in docs/options.md ends with that."""
+    rows = re.findall(r"^\| (`--.*?) \| .* \| (.*?) \|$", prose(OPTIONS), flags=re.MULTILINE)
+    said = {flag: last for flags, last in rows for flag in re.findall(r"--[\w-]+", flags)}
+    differing = {
+        option: default[1]
+        for parser in parsers(build_parser())
+        for action in parser._actions
+        for option in action.option_strings
+        if (default := re.search(r"\(default: ([\w.]+)\)", action.help or ""))
+        and option in said
+        and not re.search(rf"(?<![\w.]){re.escape(default[1])}(?![\w.])", said[option])
+    }
+    assert differing == {}
+
+
 @pytest.mark.parametrize("page", PAGES, ids=relative)
 def test_commands_are_commands(page: Path) -> None:
     """What stands in blocks of `sh` is understood as it stands."""
@@ -120,6 +137,15 @@ def test_commands_are_commands(page: Path) -> None:
     for command in doc_commands.commands_of(page):
         if command.startswith("trimotion "):
             parser.parse_args(shlex.split(command)[1:])
+
+
+def test_commands_write_into_out_and_can_be_run_again() -> None:
+    """Nothing is left beside `out/`, and nobody is told that an output exists already."""
+    for command in (line for page in PAGES for line in doc_commands.shown_by(page)):
+        written = doc_commands.written_by(command)
+        if command.startswith("trimotion ") and written:
+            assert written.startswith("out/"), command
+            assert "--overwrite" in command or "--resume" in command, command
 
 
 def test_styles_are_told_of_as_the_registry_has_them() -> None:

@@ -8,8 +8,8 @@ import media_samples as samples
 import pytest
 
 from pipeline.cli import main
-from pipeline.loop.expected_frames import expected_frames
 from stages.media import FrameRange, probe
+from stages.media.expected_frames import expected_frames
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,7 @@
 """Options: declared once in dataclasses, read for the command line, presets and specifications."""
 
 import dataclasses
+from fractions import Fraction
 from pathlib import Path
 
 import cv2
@@ -143,9 +144,9 @@ def test_output_size(options: dict, size: tuple[int, int] | None) -> None:
     look = Look(**options)
     if size is None:
         with pytest.raises(OptionError, match=r"--scale .* of 640x361: sides must lie between"):
-            look.size_for((640, 361))
+            look.framing_for((640, 361), Fraction(1))
     else:
-        assert look.size_for((640, 361)) == size
+        assert look.framing_for((640, 361), Fraction(1)).canvas == size
 
 
 @pytest.mark.parametrize("name", shipped_presets())

@@ -5,6 +5,7 @@ import json
 import os
 import subprocess
 import sys
+from contextlib import redirect_stderr
 from itertools import pairwise
 from pathlib import Path
 
@@ -44,12 +45,12 @@ def run(name: str, *, total: int | None = 3, verbose: bool = False) -> None:
         progress.finish(SUMMARY)
 
 
-def test_auto_is_a_bar_only_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_auto_is_a_bar_only_on_a_terminal() -> None:
     """A log file gets lines."""
-    monkeypatch.setattr(sys, "stderr", Terminal())
-    assert type(open_progress("auto")) is BarProgress
-    monkeypatch.setattr(sys, "stderr", io.StringIO())
-    assert type(open_progress("auto")) is PlainProgress
+    with redirect_stderr(Terminal()):
+        assert type(open_progress("auto")) is BarProgress
+    with redirect_stderr(io.StringIO()):
+        assert type(open_progress("auto")) is PlainProgress
 
 
 @pytest.mark.parametrize("name", PROGRESS)
@@ -60,24 +61,24 @@ def test_every_member_survives_any_total(name: str, total: int | None, capsys) -
     assert "warning: breaks off" in capsys.readouterr().err
 
 
-def test_bar_shows_figures_and_leaves_the_summary(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_bar_shows_figures_and_leaves_the_summary() -> None:
     """Frames, triangles and rmse; the last line is the summary."""
-    monkeypatch.setattr(sys, "stderr", Terminal())
-    run("bar")
-    text = sys.stderr.getvalue()
+    with redirect_stderr(Terminal()) as terminal:
+        run("bar")
+    text = terminal.getvalue()
     assert "3/3" in text
     assert "703 triangles, rmse 23.00" in text
     assert text.rstrip().splitlines()[-1] == str(SUMMARY)
 
 
-def test_bar_is_closed_when_a_job_fails(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_bar_is_closed_when_a_job_fails() -> None:
     """The error line starts on a line of its own."""
-    monkeypatch.setattr(sys, "stderr", Terminal())
-    progress = open_progress("bar")
-    progress.frame(1, 9, 700, 20.0)
-    with pytest.raises(ValueError, match="full"), progress:
-        raise ValueError("disk full")
-    assert sys.stderr.getvalue().endswith("\n")
+    with redirect_stderr(Terminal()) as terminal:
+        progress = open_progress("bar")
+        progress.frame(1, 9, 700, 20.0)
+        with pytest.raises(ValueError, match="full"), progress:
+            raise ValueError("disk full")
+    assert terminal.getvalue().endswith("\n")
 
 
 def test_plain_lines_are_few_but_tell_the_last(capsys) -> None:

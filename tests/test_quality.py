@@ -57,6 +57,24 @@ def test_search_near_the_fewest_allowed_bisects() -> None:
     assert len(tried) <= 10
 
 
+@pytest.mark.parametrize("seed", range(8))
+def test_smallest_mesh_is_kept(seed: int) -> None:
+    """A trial may come out larger than what it was asked for, and than what is known already."""
+    rng = np.random.default_rng(seed)
+    good: list[int] = []
+
+    def attempt(count: int) -> Trial:
+        """A layout that makes up to a tenth more triangles."""
+        more = int(count * rng.uniform(1.0, 1.1))
+        rmse = LAWS["a power"](more)
+        if rmse <= 19.0:
+            good.append(more)
+        return Trial(SimpleNamespace(triangle_count=more), rmse)
+
+    mesh = smallest_that_reaches(19.0, attempt, least=2, pixels=PIXELS)
+    assert mesh.triangle_count == min(good)
+
+
 def test_what_no_number_reaches_is_an_error() -> None:
     """The message says what was tried and what to ask for."""
     with pytest.raises(OptionError, match=r"--quality 0\.5: out of reach, 32768 triangles"):

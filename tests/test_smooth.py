@@ -1,5 +1,7 @@
 """Smoothing over time: calm stays calm, noise goes, nothing lags, nothing folds."""
 
+import gc
+import weakref
 from dataclasses import replace
 
 import numpy as np
@@ -7,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pipeline.look.drawn_frame import Take
+from pipeline.envelope import Solved
 from pipeline.look.smooth import Smoother, reach_of
 from pipeline.options.look import Look
 from stages.mesh import Mesh
@@ -25,9 +27,21 @@ def smooth(shot: list[Snapshot], sigma: float, first_of_second: int | None = Non
     smoother, found = Smoother(sigma), []
     for number, snapshot in enumerate(shot):
         second = first_of_second is not None and number >= first_of_second
-        found += smoother.add(Take(snapshot, int(second)))
-        assert len(smoother._window) <= 2 * reach_of(sigma) + 1
-    return [take.snapshot for take in [*found, *smoother.rest()]]
+        found += smoother.add(Solved(int(second), snapshot))
+    return [solved.snapshot for solved in [*found, *smoother.rest()]]
+
+
+def test_few_frames_are_kept() -> None:
+    """Those that a smooth frame depends on; memory does not grow with the clip."""
+    smoother, given, most = Smoother(0.6), [], 0
+    for snapshot in (snapshot_with(two_triangles(), np.zeros((2, 3))) for _ in range(20)):
+        given.append(weakref.ref(snapshot))
+        for _ in smoother.add(Solved(0, snapshot)):
+            pass
+        del snapshot
+        gc.collect()
+        most = max(most, sum(one() is not None for one in given))
+    assert most <= 2 * reach_of(0.6) + 1
 
 
 def paths(shot: list[Snapshot]) -> np.ndarray:

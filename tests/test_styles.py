@@ -19,6 +19,8 @@ from warp_kernels.device.device import Device
 from warp_kernels.energy.color_model import LINEAR
 from warp_kernels.errors import OptionError
 from warp_kernels.styles import STYLES, Style
+from warp_kernels.styles.color import parse_color
+from warp_kernels.styles.color_names import COLOR_NAMES
 
 SIZE = (96, 64)
 """Of the pictures [px]."""
@@ -223,7 +225,7 @@ def test_own_picture_stands_on_the_base_edge(tmp_path: Path, device: str) -> Non
         ("circles:gap=-1", "between 0 and 20"),
         ("lenses:index=9", "between 1 and 3"),
         ("paper:colour=#fff", "color"),
-        ("paper:color=white", "#rgb"),
+        ("paper:color=whit", "white?"),
         ("flat:blend=burn", "normal, multiply, screen, overlay"),
         ("flat:opacity=2", "between 0 and 1"),
         ("texture:no_such.png", "cushion, triangle"),
@@ -260,3 +262,13 @@ def test_texture_of_a_thin_triangle_is_its_mean(device: str) -> None:
     snapshot = snapshot_with(mesh_of(points, corners, *SIZE), [(120, 120, 120)] * 4)
     pixels = draw(snapshot, device, STYLES["texture"](), zoom=2)
     assert pixels[-1, 90:102].min() > 60
+
+
+@pytest.mark.parametrize(
+    ("text", "color"),
+    [("white", (255, 255, 255)), ("Dark Orange", (255, 140, 0)), ("#fa0", (255, 170, 0))],
+)
+def test_colours_have_names(text: str, color: tuple[int, int, int]) -> None:
+    """Those of CSS, in any case; none of them could be read as a number."""
+    assert parse_color(text) == color
+    assert not any(set(name) <= set("0123456789abcdef") for name in COLOR_NAMES)

@@ -5,7 +5,8 @@ from contextlib import closing
 from pathlib import Path
 from typing import Any
 
-from pipeline.loop.animate import Animated, solve
+from pipeline.loop.animate import solve
+from pipeline.loop.result import Animated
 from pipeline.progress import Progress
 from pipeline.track.schema import TABLES
 from stages.media import FrameRange

@@ -183,6 +183,7 @@ def _add_join(commands: Any) -> None:
     )
     _add_output(parser, "OUT.mtrk", "the joined track")
     parser.add_argument("--overwrite", action="store_true", help="replace an existing track")
+    parser.add_argument("-q", "--quiet", action="store_true", help="tell errors only")
 
 
 def _add_output(parser: argparse.ArgumentParser, metavar: str, text: str) -> None:

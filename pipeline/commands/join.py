@@ -3,18 +3,22 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from pipeline.track import join
+from pipeline.commands.pipes import shown_name
+from pipeline.track import TrackReader, join
 from pipeline.track.resume import check_track_name
 from warp_kernels.errors import OptionError, OutputError
 
 
-def join_tracks(parts: Sequence[Path], output: Path, *, overwrite: bool) -> None:
+def join_tracks(parts: Sequence[Path], output: Path, *, overwrite: bool) -> str:
     """Put tracks together.
 
     Args:
         parts: The tracks, in any order.
         output: The joined track.
         overwrite: Whether to replace an existing one.
+
+    Returns:
+        What was done, in one line.
 
     Raises:
         OptionError: If the parts do not follow each other, or the output is one of them.
@@ -27,3 +31,9 @@ def join_tracks(parts: Sequence[Path], output: Path, *, overwrite: bool) -> None
     if output.exists() and not overwrite:
         raise OutputError(output, "exists already", "choose another name or --overwrite")
     join(parts, output)
+    with TrackReader(output) as track:
+        rows = track.rows
+    return (
+        f"{len(parts)} tracks joined, frames {rows[0].frame} to {rows[-1].frame}, {len(rows)} in "
+        f"all: {shown_name(output)}"
+    )

@@ -1,11 +1,12 @@
 """One portrait in every style, as the paper's Fig. 6 shows them."""
 
+from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
 
+from pipeline.envelope import InShot
 from pipeline.loop.attention import Attention
-from pipeline.loop.shots import ShotFrame
 from pipeline.options.members import parse_member
 from stages.focus.faces import Faces
 from stages.frame import Frame
@@ -44,9 +45,14 @@ SAMPLE = Path(__file__).parents[2] / "sample_videos" / "astronaut.jpg"
 
 
 def draw_sheet(
-    picture: str | None, output: str, *, triangles: int = TRIANGLES, overwrite: bool = False
+    picture: str | None,
+    output: str,
+    *,
+    triangles: int = TRIANGLES,
+    overwrite: bool = False,
+    names: Iterable[str] = tuple(STYLES),
 ) -> None:
-    """Write a picture that shows all styles.
+    """Write a picture that shows styles.
 
     Args:
         picture: What is drawn: a still, or a clip whose first frame is taken; None for the
@@ -54,6 +60,7 @@ def draw_sheet(
         output: A still.
         triangles: How many triangles it becomes.
         overwrite: Whether to replace what is there.
+        names: The styles; all of them if left out.
 
     Raises:
         MediaError: If the picture cannot be read.
@@ -66,11 +73,11 @@ def draw_sheet(
     info = probe(source)
     check_output(output, info, (WIDTH, WIDTH), EncodeOptions(overwrite=overwrite), ONE)
     with open_decoder(source) as decoder:
-        alone = [ShotFrame(next(decoder), opens_shot=True)]
+        frame = next(decoder)
     # faces count more, as in every other picture
-    (shown,) = Attention([Faces()], info, 1, triangles).beside(alone)
-    frame = shown.frame
-    stacks = [stack for name in STYLES for stack in STYLES[name].portraits or (name,)]
+    (alone,) = Attention([Faces()], info, 1, triangles).beside([InShot(frame.index, frame)])
+    frame = alone.frame
+    stacks = [stack for name in names for stack in STYLES[name].portraits or (name,)]
     with Device("auto") as device:
         snapshot = _triangulated(frame, device, triangles)
         cells = [_drawn(stack.split(OVER), snapshot, frame, device) for stack in stacks]

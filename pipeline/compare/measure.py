@@ -5,16 +5,10 @@ from contextlib import nullcontext
 from pathlib import Path
 
 from pipeline.compare.coherence import CoherenceMeter
-from pipeline.compare.pairs import (
-    Matched,
-    is_padded,
-    matched,
-    size_notes,
-    size_of,
-    with_detected_shots,
-)
+from pipeline.compare.pairs import Matched, is_padded, matched, size_notes, size_of
 from pipeline.compare.report import FrameFigures, Report, squared_error
 from pipeline.compare.track_measures import TrackMeter
+from pipeline.loop.shots import detected_shots
 from pipeline.progress import Progress
 from pipeline.track import TrackReader
 from stages.media import FrameRange, open_decoder
@@ -98,5 +92,5 @@ def _with_shots(
 ) -> Iterator[tuple[Matched, int]]:
     """Pairs with the number of the frame with which their shot begins."""
     if meter is None:
-        return with_detected_shots(pairs)
+        return detected_shots(pairs, lambda pair: pair.frame)
     return ((pair, meter.shot_of(pair.frame.index)) for pair in pairs)

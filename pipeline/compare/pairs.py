@@ -1,15 +1,13 @@
 """The frames of an output beside those of its source, at the source's size."""
 
 import math
-from collections import deque
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
 
 from pipeline.compare.resample import resample
-from pipeline.loop.shots import with_shots
 from stages.frame import Frame
 from stages.media import Decoder
 from warp_kernels.errors import TrimotionError
@@ -50,23 +48,6 @@ def matched(original: Decoder, result: Decoder) -> Iterator[Matched]:
         height, width = before.pixels.shape[:2]
         shown = after.pixels[:height, :width] if crop else resample(after.pixels, (width, height))
         yield Matched(before, shown, time)
-
-
-def with_detected_shots(pairs: Iterable[Matched]) -> Iterator[tuple[Matched, int]]:
-    """Pairs with the numbers of the frames with which their shots begin, found in the source."""
-    waiting: deque[Matched] = deque()
-
-    def frames() -> Iterator[Frame]:
-        """The frames of the source, whose pairs wait for them."""
-        for pair in pairs:
-            waiting.append(pair)
-            yield pair.frame
-
-    shot = 0
-    for shot_frame in with_shots(frames(), "auto"):
-        if shot_frame.opens_shot:
-            shot = shot_frame.frame.index
-        yield waiting.popleft(), shot
 
 
 def is_padded(original: Decoder, result: Decoder) -> bool:
@@ -129,7 +110,7 @@ def _pairs(original: Decoder, result: Decoder) -> Iterator[tuple[Frame, Frame, F
             raise TrimotionError(
                 f"{result.info.path}: its frame {count} is shown at {float(since[1]):.3f} s, "
                 f"that of {original.info.path} at {float(since[0]):.3f} s; "
-                "compare the frames it was made from (--frames)"
+                "say with --frames A-B which frames of the source it shows"
             )
         count += 1
         yield before, after, since[0]
@@ -143,5 +124,5 @@ def _unequal_counts(
     counts = (count, count + rest) if output_is_longer else (count + rest, count)
     return TrimotionError(
         f"{result.info.path}: has {counts[1]} frames, {original.info.path} has {counts[0]}; "
-        "compare the frames it was made from (--frames)"
+        f"say with --frames which of them it shows, such as --frames 0-{counts[1] - 1}"
     )

@@ -5,6 +5,7 @@ from contextlib import ExitStack, contextmanager
 from functools import partial
 from typing import Any, Unpack, cast
 
+from pipeline.envelope import Solved
 from pipeline.library.arrays import options_of_arrays, solved_arrays, told
 from pipeline.library.device import opened_device
 from pipeline.library.given import given_values
@@ -14,7 +15,7 @@ from pipeline.library.pushed import Pushed
 from pipeline.library.signature import with_keywords
 from pipeline.library.triangulation import Triangulation
 from pipeline.library.wording import worded
-from pipeline.loop.animate import Solved, triangulator_of
+from pipeline.loop.convert import triangulator_of
 from stages.frame import Frame
 from warp_kernels.errors import OptionError
 from warp_kernels.raster import MAX_SIDE

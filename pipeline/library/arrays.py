@@ -3,10 +3,12 @@
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from pipeline.envelope import Solved
 from pipeline.library.given import given_values
 from pipeline.library.triangulation import Origin, Triangulation
-from pipeline.loop.animate import Solved, prepared, solved_frames
 from pipeline.loop.attention import Attention
+from pipeline.loop.convert import solved_frames
+from pipeline.loop.prepare import prepared
 from pipeline.options.build import build_run, build_solve
 from pipeline.options.run import Run
 from pipeline.options.solve_options import SolveOptions

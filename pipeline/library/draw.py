@@ -1,6 +1,7 @@
 """Draw the triangles of one frame by themselves."""
 
 from collections.abc import Mapping
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -8,6 +9,7 @@ import numpy as np
 from pipeline.library.device import opened_device
 from pipeline.options.build import build_look, build_run
 from stages.frame import Frame
+from stages.look.framing import framed
 from stages.render import Renderer
 from stages.snapshot import Snapshot
 from stages.triangulate import TriangulateOptions, Triangulator
@@ -35,7 +37,7 @@ def drawn(
     look, run = build_look(values), build_run(values)
     styles, fitted = look.shown_styles(model), look.fitted(model)
     size = (snapshot.mesh.width, snapshot.mesh.height)
-    output = look.size_for(size)
+    framing = look.framing_for(size, Fraction(1))
     is_short = fitted.degree > snapshot.model.degree
     if frame is None and (is_short or look.needs_source):
         names = ", ".join(type(style).__name__.lower() for style in styles)
@@ -46,5 +48,6 @@ def drawn(
         if frame is not None and fitted != snapshot.model:
             options = TriangulateOptions(color=model.name)
             snapshot = Triangulator(device, size, options, fitted).fit(frame, snapshot.mesh)
-        renderer = Renderer(device, size, output, styles)
-        return renderer.render(snapshot, source=None if frame is None else frame.pixels)
+        renderer = Renderer(device, size, framing.picture, styles)
+        pixels = renderer.render(snapshot, source=None if frame is None else frame.pixels)
+    return framed(pixels, framing, look.backdrop(model))

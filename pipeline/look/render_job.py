@@ -52,9 +52,12 @@ def render_job(
     """
     header = track.header
     options = replace(header.solve, frame_range=_range(wanted, track))
+    last = track.rows[-1].frame
     found, problem = _find(source, track, _needs(look, options.model, header.model))
     info = header.info
     notes = []
+    if wanted.last is not None and wanted.last > last:
+        notes.append(f"frames {wanted}: the track ends with frame {last}")
     if found is None:
         if info.audio_codec is not None and output.encode.audio:
             notes.append(f"{problem}: the sound is left out; --source says where it is now")
@@ -63,7 +66,6 @@ def render_job(
         options, info = replace(options, source=found), replace(info, path=found)
     warnings: tuple[str, ...] = ()
     if not header.finished:
-        last = track.rows[-1].frame
         warnings = (f"{track.path} is unfinished: its frames end with {last}",)
     job = Job(options, look, output, run)
     return RenderJob(job, info, tuple(notes), warnings)

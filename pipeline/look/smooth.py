@@ -6,7 +6,7 @@ from math import ceil
 
 import numpy as np
 
-from pipeline.look.drawn_frame import Take
+from pipeline.envelope import Solved
 from stages.mesh import Mesh
 from stages.motion.advect import sliding, unfolded
 from stages.motion.correspondence import kept_triangles, kept_vertices
@@ -20,7 +20,7 @@ DEVIATIONS = 3
 class _Frame:
     """A frame in the window and how it hangs together with the one before."""
 
-    take: Take
+    solved: Solved
     colors: np.ndarray
     """Coefficients of positions that count from the triangles' centroids, [T, 3, K]."""
     limits: np.ndarray
@@ -33,7 +33,7 @@ class _Frame:
     @property
     def mesh(self) -> Mesh:
         """Its triangles."""
-        return self.take.snapshot.mesh
+        return self.solved.snapshot.mesh
 
 
 class Smoother:
@@ -54,50 +54,50 @@ class Smoother:
         self._window: list[_Frame] = []
         self._done = 0  # frames of the window that were given out
 
-    def add(self, take: Take) -> Iterator[Take]:
+    def add(self, solved: Solved) -> Iterator[Solved]:
         """Take one more frame.
 
         Args:
-            take: The next one.
+            solved: The next one.
 
         Yields:
             Smooth frames, in order, as far as enough is known.
         """
         if self._reach == 0:
-            yield take
+            yield solved
             return
-        if self._window and self._window[-1].take.shot != take.shot:
+        if self._window and self._window[-1].solved.shot != solved.shot:
             yield from self.rest()
-        self._window.append(self._linked(take))
+        self._window.append(self._linked(solved))
         if len(self._window) > self._done + self._reach:
             yield self._next()
         if self._done > self._reach:
             del self._window[0]
             self._done -= 1
 
-    def rest(self) -> Iterator[Take]:
+    def rest(self) -> Iterator[Solved]:
         """Give out what is left of the shot."""
         while self._done < len(self._window):
             yield self._next()
         self._window, self._done = [], 0
 
-    def _linked(self, take: Take) -> _Frame:
-        snapshot = take.snapshot
+    def _linked(self, solved: Solved) -> _Frame:
+        snapshot = solved.snapshot
         mesh = snapshot.mesh
         before = self._window[-1].mesh if self._window else mesh
         colors = with_origins(snapshot.model, snapshot.coefficients, _centres(mesh))
         limits = snapshot.bounds.astype(np.float64)
         links = kept_vertices(before, mesh), kept_triangles(before, mesh)
-        return _Frame(take, colors, limits, *links)
+        return _Frame(solved, colors, limits, *links)
 
-    def _next(self) -> Take:
-        take = self._window[self._done].take
+    def _next(self) -> Solved:
+        solved = self._window[self._done].solved
         smooth = self._smooth(self._done)
         self._done += 1
-        return replace(take, snapshot=smooth)
+        return replace(solved, snapshot=smooth)
 
     def _smooth(self, place: int) -> Snapshot:
-        snapshot = self._window[place].take.snapshot
+        snapshot = self._window[place].solved.snapshot
         mesh = snapshot.mesh
         steps = self._mean(place, lambda f: f.mesh.vertices, lambda f: f.vertices)
         moved = mesh.moved(mesh.vertices + unfolded(mesh, sliding(mesh, steps)))

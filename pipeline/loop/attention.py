@@ -11,8 +11,8 @@ from typing import Protocol
 
 import numpy as np
 
+from pipeline.envelope import InShot
 from pipeline.loop.face_tracks import MEMORY, SPACING, FaceTracks
-from pipeline.loop.shots import ShotFrame
 from stages.focus import Focus, Glance, spelled
 from stages.focus.faces import Faces
 from stages.focus.maps import enlarged
@@ -74,26 +74,26 @@ class Attention:
         self._room = min(max((area - SMALL) / (AMPLE - SMALL), 0.0), 1.0)
         self._spelled = spelled(members)
 
-    def beside(self, shot_frames: Iterable[ShotFrame]) -> Iterator[ShotFrame]:
+    def beside(self, frames: Iterable[InShot]) -> Iterator[InShot]:
         """Give frames their weights.
 
         Args:
-            shot_frames: Frames in order.
+            frames: Frames in order.
         """
-        waiting: deque[ShotFrame] = deque()
+        waiting: deque[InShot] = deque()
         parts: list[_Part] = []
         # without members nothing is looked for, and no frame waits for the next one
-        for shot_frame, is_last in _with_ends(shot_frames) if self._members else ():
-            if shot_frame.opens_shot or not parts:
+        for seen, is_last in _with_ends(frames) if self._members else ():
+            if seen.opens_shot or not parts:
                 parts = [self._part(member) for member in self._members]
             for part in parts:
-                part.see(shot_frame.frame, is_last=is_last)
-            waiting.append(shot_frame)
+                part.see(seen.frame, is_last=is_last)
+            waiting.append(seen)
             while waiting and all(part.knows(waiting[0].frame.index) for part in parts):
-                told = waiting.popleft()
-                yield replace(told, frame=self._weighed(told.frame, parts))
+                known = waiting.popleft()
+                yield replace(known, frame=self._weighed(known.frame, parts))
         if not self._members:
-            yield from shot_frames
+            yield from frames
         if self._search is not None:
             found = "faces found" if self._found else "no face found"
             self.notes.append(f"--focus {self._spelled}: {found}")
@@ -196,12 +196,12 @@ def reach_of(members: Iterable[Focus]) -> tuple[int, int]:
     return before, after
 
 
-def _with_ends(shot_frames: Iterable[ShotFrame]) -> Iterator[tuple[ShotFrame, bool]]:
+def _with_ends(frames: Iterable[InShot]) -> Iterator[tuple[InShot, bool]]:
     """Frames, and whether their shot ends with them."""
-    held: ShotFrame | None = None
-    for shot_frame in shot_frames:
+    held: InShot | None = None
+    for seen in frames:
         if held is not None:
-            yield held, shot_frame.opens_shot
-        held = shot_frame
+            yield held, seen.opens_shot
+        held = seen
     if held is not None:
         yield held, True

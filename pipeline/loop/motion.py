@@ -1,4 +1,4 @@
-"""From decoded frames to the steps of a solution: cuts found, motion known, range exact.
+"""From the frames of a source to those that are solved: motion known, range exact.
 
 Whether a shot begins with a frame depends on the source alone, not on the range that is solved:
 the frames around a range are decoded as well and looked at. That is why ranges that begin with a
@@ -6,14 +6,15 @@ shot, solved one by one, are equal to the whole.
 """
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
 
+from pipeline.envelope import InShot, MeshFrom, Prepared
 from pipeline.loop.attention import reach_of
-from pipeline.loop.shots import AHEAD, ShotFrame
+from pipeline.loop.shots import AHEAD
 from pipeline.options.solve_options import SolveOptions
 from pipeline.track import refuse_track
 from pipeline.track.cuts import read_cuts
@@ -27,22 +28,6 @@ from warp_kernels.errors import MediaError
 BEFORE = AHEAD + 2
 """Frames decoded before the first one that is wanted: as many as a decision about a cut looks
 at, and one more for the deinterlacer."""
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class Step:
-    """A frame and the motion that led to it."""
-
-    frame: Frame
-    """The frame."""
-    passage: Passage | None
-    """What leads here from the frame before, or None where a mesh starts anew."""
-    shot: int
-    """Number of the frame with which its shot begins."""
-    repeats: bool = False
-    """Whether picture and weights are those of the frame before."""
-    before: Frame | None = None
-    """The frame before, where an earlier run ended with it; else None."""
 
 
 def open_around(options: SolveOptions, reached: Reached | None) -> Decoder:
@@ -75,51 +60,64 @@ def open_around(options: SolveOptions, reached: Reached | None) -> Decoder:
     return open_decoder(options.source, wanted, margin=margin, read=options.read)
 
 
-def steps(
-    shot_frames: Iterable[ShotFrame],
+def with_motion(
+    frames: Iterable[InShot],
     info: MediaInfo,
     options: SolveOptions,
     reached: Reached | None,
     notes: list[str],
-) -> Iterator[Step]:
-    """Estimate the motion between the frames of a shot.
+) -> Iterator[Prepared]:
+    """Estimate the motion between the frames of a shot, and leave out those around the range.
 
     Args:
-        shot_frames: The frames of the range and around it.
+        frames: The frames of the range and around it.
         info: The source.
         options: Say what is wanted and how motion is estimated.
-        reached: Where an earlier run ended, or None.
+        reached: Where an earlier run ended, or None. If the solution goes on from there, that frame
+            is given once more before the first one.
         notes: Receives a sentence if a mesh begins inside a shot.
     """
     before: Frame | None = None
     earlier: View | None = None
     shot = None if reached is None else reached.shot
     last = None if reached is None else reached.frame
-    for shot_frame in shot_frames:
-        frame = shot_frame.frame
+    for seen in frames:
+        frame = seen.frame
         later = View(frame.pixels)
         is_new = reached is None or frame.index > reached.frame
         if is_new and holds(options.frame_range, frame, info):
             joined = before is not None and before.index == last
-            if not (joined or shot_frame.opens_shot or options.independent):
+            if not (joined or seen.opens_shot or options.independent):
                 notes.append(_restart(frame.index))
-            if shot is None or shot_frame.opens_shot or not joined:
+            if reached is not None and before is not None and before.index == reached.frame == last:
+                yield Prepared(reached.shot, before, MeshFrom.TRACK)
+            if shot is None or seen.opens_shot or not joined:
                 shot = frame.index
-            passage: Passage | None = None
-            if earlier is not None and shot != frame.index and not options.independent:
-                passage = Passage.between(options.flow, earlier, later)
-            goes_on = reached is not None and last == reached.frame and joined
-            repeats = _repeats(passage, before, frame)
-            yield Step(frame, passage, shot, repeats, before if goes_on else None)
+            mesh_from: Passage | MeshFrom = MeshFrom.LAYOUT
+            if before is not None and earlier is not None and shot != frame.index:
+                mesh_from = _mesh_from(options, before, frame, earlier, later)
+            yield Prepared(shot, frame, mesh_from)
             last = frame.index
         before, earlier = frame, later
 
 
-def _repeats(passage: Passage | None, before: Frame | None, frame: Frame) -> bool:
-    """Whether a frame looks and weighs as the one before."""
-    if passage is None or before is None or not passage.is_still:
-        return False
-    one, other = before.weights, frame.weights
+def _mesh_from(
+    options: SolveOptions, before: Frame, frame: Frame, earlier: View, later: View
+) -> Passage | MeshFrom:
+    """Where the mesh of a frame comes from within a shot.
+
+    A picture that comes again, as in what is drawn for every other frame, keeps its mesh; under
+    maps, which may change meanwhile, only its motion is known.
+    """
+    if options.independent:
+        return MeshFrom.LAYOUT
+    passage = Passage.between(options.flow, earlier, later)
+    is_same = passage.is_still and not options.maps and _weigh_alike(before.weights, frame.weights)
+    return MeshFrom.SAME_PICTURE if is_same else passage
+
+
+def _weigh_alike(one: np.ndarray | None, other: np.ndarray | None) -> bool:
+    """Whether two weights of the pixels are the same."""
     return one is other or (one is not None and other is not None and np.array_equal(one, other))
 
 

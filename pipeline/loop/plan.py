@@ -21,6 +21,8 @@ class Plan:
     """One range for each shot, in order."""
     ranges: tuple[FrameRange, ...]
     """Ranges of one shot or of several that follow each other, in order."""
+    notes: tuple[str, ...] = ()
+    """Choices that were made in reading the source, one sentence each."""
 
     @property
     def frames(self) -> int:
@@ -61,16 +63,17 @@ def plan(options: SolveOptions, parts: int | None = None) -> Plan:
     last = -1
     with open_around(options, None) as decoder:
         check_cuts(options.cuts, options.source, decoder.info)
-        for shot_frame in with_shots(decoder, options.cuts):
-            frame = shot_frame.frame
-            if holds(options.frame_range, frame, decoder.info):
-                last = frame.index
-                if shot_frame.opens_shot or not starts:
+        for seen in with_shots(decoder, options.cuts):
+            if holds(options.frame_range, seen.frame, decoder.info):
+                last = seen.frame.index
+                if seen.opens_shot or not starts:
                     starts.append(last)
+        notes = tuple(decoder.notes)
     step = options.frame_range.step
     ends = [*(start - step for start in starts[1:]), last]
     shots = tuple(FrameRange(a, b, step) for a, b in zip(starts, ends, strict=True))
-    return Plan(options.source, shots, shots if parts is None else _shared(shots, parts))
+    ranges = shots if parts is None else _shared(shots, parts)
+    return Plan(options.source, shots, ranges, notes)
 
 
 def _shared(shots: tuple[FrameRange, ...], parts: int) -> tuple[FrameRange, ...]:

@@ -1,14 +1,18 @@
 """Where one shot ends and the next begins."""
 
 from bisect import bisect_right
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
+from typing import TypeVar
 
+from pipeline.envelope import InShot
 from pipeline.track.cuts import read_cuts
 from stages.frame import Frame
 from stages.metrics import Signature, change, likeness, signature
 from warp_kernels.errors import OptionError
+
+Item = TypeVar("Item")
 
 FLASH = 3
 """Longest flash or other interruption after which a shot goes on [frames]."""
@@ -27,18 +31,8 @@ CLEAR_RATIO, CLEARLY_ALIKE = 6.0, 0.78
 plain pictures are alike by chance, but motion does not begin so suddenly."""
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class ShotFrame:
-    """A frame and whether a shot begins with it."""
-
-    frame: Frame
-    """The frame."""
-    opens_shot: bool
-    """Whether the mesh starts anew here."""
-
-
-def with_shots(frames: Iterable[Frame], cuts: str) -> Iterator[ShotFrame]:
-    """Mark the frames with which shots begin.
+def with_shots(frames: Iterable[Frame], cuts: str) -> Iterator[InShot]:
+    """Tell for every frame where its shot begins; the first one that is given begins one.
 
     Args:
         frames: Frames in order.
@@ -51,32 +45,53 @@ def with_shots(frames: Iterable[Frame], cuts: str) -> Iterator[ShotFrame]:
     if not cuts:
         raise OptionError("--cuts '': use auto, none or the path of a list")
     if cuts == "auto":
-        return _detected(frames)
+        return (InShot(shot, frame) for frame, shot in detected_shots(frames, lambda frame: frame))
     known = frozenset() if cuts == "none" else read_cuts(Path(cuts))
     return _listed(frames, known)
 
 
-def _listed(frames: Iterable[Frame], cuts: frozenset[int]) -> Iterator[ShotFrame]:
+def _listed(frames: Iterable[Frame], cuts: frozenset[int]) -> Iterator[InShot]:
     """Obey a list; a cut at a frame that is skipped opens a shot with the next one."""
     ordered = sorted(cuts)
-    before: int | None = None
+    before, shot = -1, 0
     for frame in frames:
         passed = bisect_right(ordered, frame.index)
-        yield ShotFrame(frame, before is None or passed > before)
-        before = passed
+        if passed > before:
+            before, shot = passed, frame.index
+        yield InShot(shot, frame)
 
 
-def _detected(frames: Iterable[Frame]) -> Iterator[ShotFrame]:
-    """Hold back as many frames as a decision needs to look ahead."""
-    waiting: list[Frame] = []
+def detected_shots(
+    items: Iterable[Item], frame_of: Callable[[Item], Frame]
+) -> Iterator[tuple[Item, int]]:
+    """Find hard cuts; holds back as many items as a decision needs to look ahead.
+
+    Args:
+        items: Frames, or what comes with them, in order.
+        frame_of: Gives the frame of an item.
+
+    Yields:
+        Every item, and the number of the frame with which its shot begins.
+    """
+    waiting: deque[Item] = deque()
     detector = _Detector()
-    for frame in frames:
-        detector.add(signature(frame.pixels))
-        waiting.append(frame)
+    shot = 0
+
+    def decided() -> tuple[Item, int]:
+        """The item that has waited longest."""
+        nonlocal shot
+        item = waiting.popleft()
+        if detector.decide():
+            shot = frame_of(item).index
+        return item, shot
+
+    for item in items:
+        detector.add(signature(frame_of(item).pixels))
+        waiting.append(item)
         if len(waiting) > AHEAD:
-            yield ShotFrame(waiting.pop(0), detector.decide())
-    for frame in waiting:
-        yield ShotFrame(frame, detector.decide())
+            yield decided()
+    while waiting:
+        yield decided()
 
 
 class _Detector:

@@ -1,13 +1,12 @@
 """Values of flags: from the text that a user wrote to a number, a size or a text."""
 
 import math
-import re
 from argparse import ArgumentTypeError
 from collections.abc import Callable
 from fractions import Fraction
 from typing import Any
 
-_SIZE = re.compile(r"(\d{1,9})[xX](\d{1,9})")
+from pipeline.options.output_size import FORM, parse_size
 
 
 def whole_number(text: str) -> int:
@@ -52,15 +51,15 @@ def rate(text: str) -> Fraction:
 
 
 def size(text: str) -> tuple[int, int]:
-    """Read a width and a height, such as 1280x720.
+    """Read a width and a height, such as 1280x720; see `parse_size`.
 
     Raises:
         ArgumentTypeError: If the text has another form.
     """
-    match = _SIZE.fullmatch(text)
-    if match is None:
-        raise ArgumentTypeError(f"{text!r} is not a size; write WxH such as 1280x720")
-    return int(match[1]), int(match[2])
+    try:
+        return parse_size(text)
+    except ValueError:
+        raise ArgumentTypeError(f"{text!r} is not a size; write {FORM}") from None
 
 
 def text_value(text: str) -> str:

@@ -1,8 +1,6 @@
 """A user's weights: a grey picture, or a clip of them, that lies over the source."""
 
-from collections.abc import Iterable, Iterator
 from dataclasses import replace
-from itertools import chain
 
 import numpy as np
 
@@ -46,42 +44,43 @@ class WeightMap:
         strength: float = 1.0,
     ) -> None:
         self.notes: list[str] = []
-        """Choices that were made, one sentence each."""
+        """Choices that were made, one sentence each; complete once it is closed."""
         self.warnings: list[str] = []
-        """What may be a mistake, one sentence each; complete once the last frame was read."""
+        """What may be a mistake, one sentence each; complete once it is closed."""
         greys = np.maximum(np.arange(WHITE + 1), 1)
         self._levels = np.maximum(np.rint(WHITE * (greys / WHITE) ** strength), 1).astype(np.uint8)
         self._path = path
         self._range = replace(frame_range, start_time=None, end_time=None)
+        self._decoder: Decoder | None = None
         self._last: int | None = None
         self._lit = False
         self._info = probe(path)
         self._check_size(size)
         self._still = self._read_still() if self._info.kind == "image" else None
 
-    def beside(self, frames: Iterable[Frame]) -> Iterator[Frame]:
-        """Give frames their weights.
+    def weighed(self, frame: Frame) -> Frame:
+        """Give a frame its weights.
 
         Args:
-            frames: Frames of the source, in order.
+            frame: A frame of the source, later than any that was given before.
 
         Raises:
-            MediaError: If there are no weights for a frame, or they are not grey.
+            MediaError: If there are no weights for it, or they are not grey.
         """
-        if self._still is None:
-            return self._moving(iter(frames))
-        still = self._still
-        return (_multiplied(frame, still) for frame in frames)
+        if self._still is not None:
+            return _multiplied(frame, self._still)
+        if self._decoder is None:
+            # Times of the map mean nothing: a source that is cut by time starts at a known number.
+            wanted = replace(self._range, first=frame.index)
+            self._decoder = open_decoder(self._path, wanted, paper=BLACK)
+        return _multiplied(frame, self._weights_at(frame.index, self._decoder))
 
-    def _moving(self, frames: Iterator[Frame]) -> Iterator[Frame]:
-        first = next(frames, None)
-        if first is None:
+    def close(self) -> None:
+        """Close the file, and tell what reading it has brought up."""
+        decoder, self._decoder = self._decoder, None
+        if decoder is None:
             return
-        # Times of the map mean nothing: a source that is cut by time starts at a known number.
-        wanted = replace(self._range, first=first.index)
-        with open_decoder(self._path, wanted, paper=BLACK) as decoder:
-            for frame in chain([first], frames):
-                yield _multiplied(frame, self._weights_at(frame.index, decoder))
+        with decoder:
             self._tell(decoder)
         if not self._lit:
             self.warnings.append(f"{self._path}: black in every frame; paint white what counts")

@@ -12,6 +12,7 @@ from stages.solve.mend import divide_torn
 from stages.topology import Goal, Topology
 from stages.topology.appraise import Appraiser
 from stages.topology.area_limit import divide_large
+from stages.topology.exact_count import with_exactly
 from stages.topology.growth import Growth
 from warp_kernels.energy.workspace import Workspace
 
@@ -67,8 +68,15 @@ class Approximator:
             mesh: A layout.
             goal: What the result must be like.
         """
-        mesh = self._settle(self._refine(mesh, goal))
-        return self.within_limits(mesh, goal)
+        mesh = self._counted(self._refine(mesh, goal), goal, SPARE)
+        return self.within_limits(self._settle(mesh), goal)
+
+    def _counted(self, mesh: Mesh, goal: Goal, spare: float = 1.0) -> Mesh:
+        """The mesh with the number of triangles that is wanted; a threshold's is a cap only."""
+        if goal.threshold is not None and mesh.triangle_count <= goal.count:
+            return mesh
+        self.appraiser.limit(spare * goal.largest_area)
+        return with_exactly(goal.count, mesh, self.appraiser)
 
     def _refine(self, mesh: Mesh, goal: Goal) -> Mesh:
         """Alternate optimisation and changes of topology until the wanted number is reached."""
@@ -148,7 +156,7 @@ class Approximator:
         return self.within_limits(mesh, goal)
 
     def within_limits(self, mesh: Mesh, goal: Goal) -> Mesh:
-        """Divide what has grown beyond the largest area while vertices moved.
+        """Divide what has grown beyond the largest area while vertices moved, and count.
 
         Args:
             mesh: The mesh in the workspace; so is the result.
@@ -162,4 +170,7 @@ class Approximator:
             if mesh.triangle_count > goal.count + 1:
                 mesh = self.topology.adapt(mesh, self.appraiser, goal)
             load_mesh(self.workspace, mesh)
-        return mesh
+        counted = self._counted(mesh, goal)
+        if counted is not mesh:
+            load_mesh(self.workspace, counted)
+        return counted

@@ -60,12 +60,12 @@ class Drawn(Style):
             "range": (-180.0, 180.0),
         },
     )
-    ink: str = field(default="#24242c", metadata={"help": "#rgb or #rrggbb", "form": "color"})
+    ink: str = field(
+        default="#24242c", metadata={"help": "#rgb, #rrggbb or a name", "form": "color"}
+    )
     paper: str = field(
         default="triangle",
-        metadata={
-            "help": "triangle: each its own colour; #rgb or #rrggbb: a sheet; none: strokes alone"
-        },
+        metadata={"help": "triangle: each its own colour; a colour: a sheet; none: strokes alone"},
     )
     contrast: float = field(
         default=0.5,
@@ -114,6 +114,12 @@ class Drawn(Style):
     def covers(self) -> bool:
         """Whether there is paper."""
         return self.paper != NO_PAPER
+
+    @property
+    def ground(self) -> str | None:
+        """The sheet, if all triangles are one."""
+        is_sheet = self.paper not in (NO_PAPER, OWN_PAPER) and self.blend == "normal"
+        return self.paper if is_sheet else None
 
     def numbers(self) -> tuple[float, ...]:
         """In the order of `tones.strokes`."""

@@ -115,7 +115,9 @@ class Edges(Style):
         default=1.0,
         metadata={"help": "width of the lines", "unit": "px of the source", "range": (0.1, 50.0)},
     )
-    color: str = field(default="#222", metadata={"help": "#rgb or #rrggbb", "form": "color"})
+    color: str = field(
+        default="#222", metadata={"help": "#rgb, #rrggbb or a name", "form": "color"}
+    )
     fade: float = field(
         default=0.0,
         metadata={

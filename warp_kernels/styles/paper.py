@@ -84,7 +84,9 @@ class Paper(Style):
     Deviation: not in the paper.
     """
 
-    color: str = field(default="#f3eee3", metadata={"help": "#rgb or #rrggbb", "form": "color"})
+    color: str = field(
+        default="#f3eee3", metadata={"help": "#rgb, #rrggbb or a name", "form": "color"}
+    )
     grain: float = field(
         default=0.4, metadata={"help": "contrast of the grain", "range": (0.0, 4.0)}
     )
@@ -104,6 +106,11 @@ class Paper(Style):
     shader: ClassVar[Any] = paper_color
     prepare: ClassVar[Any] = prepare_paper
     portraits: ClassVar[tuple[str, ...]] = ("flat + paper:color=#fff,blend=multiply",)
+
+    @property
+    def ground(self) -> str | None:
+        """The paper, unless it only gives its grain to what lies below."""
+        return self.color if self.blend == "normal" else None
 
     def numbers(self) -> tuple[float, ...]:
         """Red, green, blue [code values], grain, size, sheets."""

@@ -24,7 +24,7 @@ class Style:
         unit       its unit, if it has one
         range      least and largest value
         choices    the texts that it may be
-        form       `color`: written #rgb or #rrggbb
+        form       `color`: written #rgb, #rrggbb or a name of CSS
 
     Raises:
         OptionError: If a parameter is out of its range.
@@ -75,6 +75,11 @@ class Style:
     def is_opaque(self) -> bool:
         """Whether nothing can be transparent where it is drawn."""
         return self.covers and self.opacity == 1.0
+
+    @property
+    def ground(self) -> str | None:
+        """The colour of a sheet that it lays under everything, or None."""
+        return None
 
     def numbers(self) -> tuple[float, ...]:
         """At most sixteen numbers for the shader."""

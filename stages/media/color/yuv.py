@@ -89,7 +89,7 @@ def _read_matrix(frame: VideoFrame) -> ColorReading:
     """How a frame's pixels become RGB.
 
     Untagged video is BT.709 when it is at least 1280 wide or more than 576 high, else BT.601,
-    as players do.
+    as most players do.
     """
     if frame.format.is_rgb or "pal8" in frame.format.name:
         return ColorReading("rgb", Colorspace.ITU709, True, _TRANSFERS.get(frame.color_trc), ())
@@ -101,13 +101,25 @@ def _read_matrix(frame: VideoFrame) -> ColorReading:
         matrix, colorspace = _MATRICES[frame.colorspace]
     elif frame.colorspace not in _UNTAGGED:
         notes.append(f"colour matrix {frame.colorspace} is not known: taken as {matrix}")
-    elif not gray:
-        notes.append(f"untagged colour: taken as {matrix}")
+    elif not gray and _is_doubtful(frame.width, frame.height):
+        notes.append(
+            f"untagged colour of {frame.width}x{frame.height}, which players take differently: "
+            f"taken as {matrix}"
+        )
     full = frame.color_range == _FULL or frame.format.name.startswith("yuvj")
     if gray and frame.color_range != _LIMITED:
         full = True
     hdr = _TRANSFERS.get(frame.color_trc)
     return ColorReading(matrix, int(colorspace), full, hdr, tuple(notes))
+
+
+def _is_doubtful(width: int, height: int) -> bool:
+    """Whether players disagree about untagged video of this size [px].
+
+    They call a picture large by its width, or by its height from one of two bounds on. Where all
+    agree there is no choice to be told of.
+    """
+    return len({width >= 1280, height > 576, height >= 720}) > 1
 
 
 class RgbReader:

@@ -16,6 +16,7 @@ from stages.media.frame_range import FrameRange
 from stages.media.naming import NumberedPattern, input_pattern
 from stages.media.orientation import upright
 from stages.media.reading.container import DAMAGE, reason_of
+from stages.media.reading.count import count_frames
 from stages.media.reading.deinterlace import deinterlace
 from stages.media.reading.frame_index import seek_to_frame
 from stages.media.reading.info import DEFAULT_MAX_PIXELS, MediaInfo
@@ -158,14 +159,23 @@ class Decoder:
         if note not in self.notes:
             self.notes.append(note)
 
-    def _refuse_nothing(self, available: str) -> None:
+    def _refuse_nothing(self, kind: str, last: int) -> None:
+        """Refuse a range without a frame, and note where it reaches beyond the source.
+
+        Args:
+            kind: What the frames are called.
+            last: Number of the source's last frame.
+        """
+        wanted, first = self._range, self.info.first_frame
         if not (self._met and self._delivered):
-            wanted = self._range
+            available = f"{kind} {first} to {last}"
             if wanted.start_time is not None or wanted.end_time is not None:
                 raise OptionError(_no_such_times(self._name, wanted, self.info, available))
             raise OptionError(
-                f"frames {self._range} of {self._name}: there are none; the source has {available}"
+                f"frames {wanted} of {self._name}: there are none; the source has {available}"
             )
+        if wanted.last is not None and wanted.last > last:
+            self._note_once(f"frames {wanted}: the source ends with frame {last}")
 
 
 class _FileDecoder(Decoder):
@@ -190,7 +200,9 @@ class _FileDecoder(Decoder):
             raise
         super().__init__(info, wanted, margin, str(path), paper)
         self._profile = profile
+        self._read = read
         self._end = Fraction(0)
+        self._ended = True
 
     def close(self) -> None:
         """Release the file; no frame can be read afterwards."""
@@ -210,6 +222,7 @@ class _FileDecoder(Decoder):
             time = pts * base - origin
             past += wanted.is_past(index, time)
             if past > self._after * wanted.step:
+                self._ended = False
                 break
             if wanted.holds(index, time):
                 self._met = True
@@ -223,7 +236,15 @@ class _FileDecoder(Decoder):
             index += 1
             self._end = pts * base
         self._report(repair.repaired, index)
-        self._refuse_nothing(f"frames 0 to {index - 1}")
+        self._refuse_nothing("frames", self._last_frame(index - 1))
+
+    def _last_frame(self, reached: int) -> int:
+        """Number of the last frame, counted if the range was left without a frame of it."""
+        if self._ended:
+            return reached
+        if self._met and self._delivered:
+            return max(reached, self._range.last or 0)
+        return count_frames(self._source.path, self._read) - 1
 
     def _report(self, repaired: int, count: int) -> None:
         if repaired:
@@ -280,7 +301,7 @@ class _SequenceDecoder(Decoder):
             self._shown = source.orientation_of(raw)  # a camera may be turned between two
             self._profile = source.profile_of(raw)
             yield self._to_frame(number, number - first, raw)
-        self._refuse_nothing(f"stills {first} to {self._numbers[-1]}")
+        self._refuse_nothing("stills", self._numbers[-1])
 
     def _given(self) -> list[int]:
         """Numbers of the range and of its margin."""

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import av
 
+from stages.media.expected_frames import expected_frames
 from stages.media.frame_range import FrameRange
 from stages.media.naming import STILL_ENDINGS, NumberedPattern
 from stages.media.reading.info import MediaInfo
@@ -160,10 +161,11 @@ def _plan_stills(
     options: EncodeOptions,
     frame_range: FrameRange,
 ) -> OutputPlan:
-    if pattern is None and source.frame_count != 1 and not frame_range.is_single:
+    count = expected_frames(frame_range, source)
+    if pattern is None and count != 1 and not frame_range.is_single:
         stem, ending = target.stem, target.suffix
         raise OptionError(
-            f"output {target}: one still cannot hold {source.frame_count or 'many'} frames; "
+            f"output {target}: one still cannot hold {count or 'many'} frames; "
             f"write {stem}_####{ending}, or choose one frame with --frames N"
         )
     if options.codec is not None or options.pixel_format is not None:

@@ -1,6 +1,7 @@
 """How many frames a run will have, as far as can be told beforehand."""
 
-from stages.media import FrameRange, MediaInfo
+from stages.media.frame_range import FrameRange
+from stages.media.reading.info import MediaInfo
 
 
 def expected_frames(wanted: FrameRange, info: MediaInfo) -> int | None:
