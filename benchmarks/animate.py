@@ -31,8 +31,9 @@ from stages.media import EncodeOptions, FrameRange
 from stages.media.reading.decode import Decoder
 from stages.media.writing.encode import Encoder
 from stages.render import Renderer
-from stages.topology.refine import RefineOptions
-from stages.triangulate import TriangulateOptions, Triangulator
+from stages.topology.refine_options import RefineOptions
+from stages.triangulate import Triangulator
+from stages.triangulate_options import TriangulateOptions
 
 DEFAULT_CLIP = Path(__file__).parents[1] / "sample_videos" / "bigbuckbunny.mp4"
 WATCHED: tuple[tuple[str, type | ModuleType, str], ...] = (

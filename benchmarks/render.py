@@ -23,8 +23,8 @@ from timing import (
     table,
 )
 
-from pipeline.options.flags import size
 from pipeline.options.members import parse_member
+from pipeline.options.values import size
 from stages.render import Renderer
 from stages.snapshot import Snapshot
 from warp_kernels.device.device import Device

@@ -146,9 +146,10 @@ def run_plan(arguments: argparse.Namespace) -> None:
         arguments: What the user gave; options that were left out are absent.
     """
     from pipeline.loop.plan import plan
-    from pipeline.options.build import build_solve
+    from pipeline.options.build import fill, values_of
+    from pipeline.options.solve_options import SolveOptions
 
-    found = plan(build_solve(vars(arguments)), arguments.parts)
+    found = plan(fill(SolveOptions, values_of(vars(arguments))), arguments.parts)
     print(found.as_json() if arguments.json else found.as_lines())
 
 

@@ -1,6 +1,6 @@
 """One frame, from a seed mesh to a snapshot: the only file that orders the steps."""
 
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -10,7 +10,7 @@ from stages.mesh import Mesh
 from stages.motion.advect import Carried
 from stages.motion.boiling import Unrest
 from stages.motion.springs import springs_of
-from stages.optimize import OptimizeOptions, load_mesh, optimize, place_mesh
+from stages.optimize import load_mesh, optimize, place_mesh
 from stages.snapshot import Snapshot
 from stages.solve.approximate import Approximator
 from stages.solve.bench import Bench
@@ -19,16 +19,14 @@ from stages.solve.color_owners import color_owners
 from stages.solve.convergence import Convergence
 from stages.solve.quality import FALL, Trial, smallest_that_reaches
 from stages.spaces import SPACES
-from stages.topology import TOPOLOGIES, Goal
+from stages.topology import TOPOLOGIES
 from stages.topology.appraise import Appraiser
-from stages.topology.goal import SLIVER_HEIGHT
-from stages.topology.refine import RefineOptions
+from stages.topology.goal import SLIVER_HEIGHT, Goal
+from stages.triangulate_options import TriangulateOptions
 from warp_kernels.device.device import Device
-from warp_kernels.energy.color_model import CHANNELS, COLOR_MODELS, ColorModel
+from warp_kernels.energy.color_model import CHANNELS, ColorModel
 from warp_kernels.energy.solver_kernels import limiting_kernels, solving_kernels
-from warp_kernels.energy.variant_energies import SUMS
 from warp_kernels.energy.workspace import Workspace
-from warp_kernels.errors import OptionError
 
 SPRING = 39.0
 """Strength of the temporal term where the motion is certain, as a multiple of the mean squared
@@ -49,67 +47,6 @@ CALM_QUALITY = 0.02
 """A later frame keeps its number of triangles while its rmse is this close to the wanted one."""
 MOST_DRIFT = 0.02
 """Most that the number of triangles changes from one frame to the next, as a part of it."""
-
-
-@dataclass(frozen=True)
-class TriangulateOptions:
-    """How one picture becomes triangles.
-
-    Raises:
-        OptionError: If an option has an impossible value.
-    """
-
-    color: str = field(
-        default="constant",
-        metadata={"help": "colour model that is optimised", "choices": tuple(COLOR_MODELS)},
-    )
-    iterations: int = field(
-        default=240, metadata={"help": "optimiser iterations for the first frame of a shot"}
-    )
-    frame_iterations: int = field(
-        default=48, metadata={"help": "most optimiser iterations for each later frame"}
-    )
-    topology: str = field(
-        default="energy",
-        metadata={
-            "help": "flips that lower the energy, or the paper's Delaunay flips",
-            "choices": tuple(TOPOLOGIES),
-        },
-    )
-    sums: str = field(
-        default="edges",
-        metadata={"help": "how moments are summed; equal results", "choices": SUMS},
-    )
-    space: str = field(
-        default="rgb",
-        metadata={
-            "help": "colour space in which the error is measured; colours are fitted in RGB",
-            "choices": tuple(SPACES),
-        },
-    )
-    optimize: OptimizeOptions = field(default_factory=OptimizeOptions)
-    refine: RefineOptions = field(default_factory=RefineOptions)
-
-    def __post_init__(self) -> None:
-        for name in ("iterations", "frame_iterations"):
-            if getattr(self, name) < 0:
-                flag = name.replace("_", "-")
-                raise OptionError(f"--{flag} {getattr(self, name)}: must be 0 or more")
-        for name, known in (
-            ("color", COLOR_MODELS),
-            ("topology", TOPOLOGIES),
-            ("sums", SUMS),
-            ("space", SPACES),
-        ):
-            if getattr(self, name) not in known:
-                raise OptionError(
-                    f"--{name} {getattr(self, name)}: unknown; choose from {', '.join(known)}"
-                )
-
-    @property
-    def model(self) -> ColorModel:
-        """The colour model that is optimised."""
-        return COLOR_MODELS[self.color]
 
 
 class Triangulator:

@@ -23,12 +23,12 @@ from stages.flows.dis import Dis
 from stages.flows.field import FlowField
 from stages.flows.view import View
 from stages.layouts.grid import Grid
-from stages.masks.regions import Region
+from stages.masks.region import Region
 from stages.media import FrameRange, open_decoder
 from stages.mesh import Mesh
 from stages.snapshot import Snapshot
-from stages.topology.refine import RefineOptions
-from stages.triangulate import TriangulateOptions
+from stages.topology.refine_options import RefineOptions
+from stages.triangulate_options import TriangulateOptions
 from stages.validate import assert_valid
 from tests import media_samples as samples
 from tests.jobs import changed, job_of

@@ -1,5 +1,6 @@
 """The house rules that a machine can check, over the whole repository; proof that each bites."""
 
+import ast
 import dataclasses
 import importlib
 import re
@@ -231,6 +232,23 @@ def test_mutable_registry_member_is_found() -> None:
         assert not is_frozen_dataclass(planted)
     assert is_frozen_dataclass(frozen)
     assert is_frozen_dataclass(frozen(1))
+
+
+def class_names(modules: list[Module]) -> dict[str, list[str]]:
+    """The modules that define a class, by its name."""
+    found: dict[str, list[str]] = {}
+    for module in modules:
+        for node in ast.walk(module.tree):
+            if isinstance(node, ast.ClassDef):
+                found.setdefault(node.name, []).append(module.path)
+    return found
+
+
+def test_no_two_classes_have_one_name() -> None:
+    """A name in a message, a track or a search leads to one place; a planted pair is found."""
+    assert not {name: paths for name, paths in class_names(MODULES).items() if len(paths) > 1}
+    pair = [Module("stages/a.py", "class A: ..."), Module("pipeline/b.py", "class A: ...")]
+    assert class_names(pair) == {"A": ["stages/a.py", "pipeline/b.py"]}
 
 
 def test_runtime_dependencies_are_the_six() -> None:

@@ -19,8 +19,9 @@ from stages.motion.advect import Carried, advect
 from stages.motion.boiling import Unrest
 from stages.snapshot import Snapshot
 from stages.topology import TOPOLOGIES
-from stages.topology.refine import RefineOptions
-from stages.triangulate import TriangulateOptions, Triangulator
+from stages.topology.refine_options import RefineOptions
+from stages.triangulate import Triangulator
+from stages.triangulate_options import TriangulateOptions
 from stages.validate import assert_valid
 from tests import media_samples as samples
 from tests.kernel_samples import frame_of, waves

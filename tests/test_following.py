@@ -13,7 +13,7 @@ from pipeline.look.region_masks import check_followed
 from pipeline.options.members import parse_region
 from pipeline.track import TrackReader
 from stages.edits import flip_edges, split_triangles
-from stages.masks.regions import Region
+from stages.masks.region import Region
 from stages.media import probe
 from stages.motion.correspondence import kept_triangles
 from stages.motion.inherit_regions import inherited, under_mask
@@ -26,7 +26,8 @@ from tests.snapshots import restless_shot, snapshot_with
 from tests.tracks import COUNT, CUT, write_clip
 from warp_kernels.device.device import Device
 from warp_kernels.errors import OptionError
-from warp_kernels.styles import STYLES, Flat
+from warp_kernels.styles import STYLES
+from warp_kernels.styles.flat import Flat
 
 QUICK = ("--iterations", "2", "--frame-iterations", "4", "--triangles", "60")
 RED = "paper:color=#f00,grain=0,sheets=0"

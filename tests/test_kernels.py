@@ -15,7 +15,9 @@ import warp as wp
 from stages.frame import Frame
 from stages.layouts.importance import Importance
 from stages.render import Renderer
-from stages.triangulate import RefineOptions, TriangulateOptions, Triangulator
+from stages.topology.refine_options import RefineOptions
+from stages.triangulate import Triangulator
+from stages.triangulate_options import TriangulateOptions
 from tests.test_encode import ROOT
 from warp_kernels.device import kernels as compiling
 from warp_kernels.device.cache_place import is_first_run

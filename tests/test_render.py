@@ -14,7 +14,7 @@ from tests.kernel_samples import noise, random_mesh, snapshot_of, waves
 from warp_kernels.device.device import Device
 from warp_kernels.energy.color_model import CONSTANT, LINEAR, QUADRATIC
 from warp_kernels.errors import OptionError
-from warp_kernels.raster import MAX_SIDE
+from warp_kernels.limits import MAX_SIDE
 from warp_kernels.styles import STYLES, Style
 from warp_kernels.styles.edges import Edges
 from warp_kernels.styles.flat import Flat

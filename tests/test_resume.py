@@ -167,6 +167,7 @@ def test_track_of_an_earlier_program_goes_on(clip: Path, whole: Path, tmp_path: 
     with closing(sqlite3.connect(track)) as connection, connection:
         (text,) = connection.execute("SELECT value FROM header WHERE key = 'options'").fetchone()
         options = {**json.loads(text), **job, "class": "Job"}
+        options["layout"]["class"], options["flow"]["class"] = "Importance", "Dis"
         update = "UPDATE header SET value = ? WHERE key = 'options'"
         connection.execute(update, (json.dumps(options),))
     with pytest.raises(OptionError, match="--seed 1 instead of 0"):

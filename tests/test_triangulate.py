@@ -11,8 +11,9 @@ from stages.motion.advect import Carried
 from stages.snapshot import Snapshot
 from stages.solve.convergence import Convergence
 from stages.topology import TOPOLOGIES
-from stages.topology.refine import RefineOptions
-from stages.triangulate import TriangulateOptions, Triangulator
+from stages.topology.refine_options import RefineOptions
+from stages.triangulate import Triangulator
+from stages.triangulate_options import TriangulateOptions
 from stages.validate import assert_valid
 from tests.kernel_samples import frame_of, noise, waves
 from warp_kernels.device.device import Device

@@ -16,7 +16,7 @@ from pipeline.compare.coherence import CoherenceMeter
 from pipeline.compare.measure import measure
 from pipeline.compare.pairs import Matched
 from stages.flows.field import FlowField
-from stages.metrics import Motion, motion_difference, warp_error
+from stages.metrics import SourceMotion, motion_difference, warp_error
 from stages.metrics.visible import visible
 from tests.kernel_samples import frame_of
 
@@ -31,10 +31,10 @@ REPORT_KEYS = {
 }
 
 
-def moving(width: int, height: int, dx: float, dy: float) -> Motion:
+def moving(width: int, height: int, dx: float, dy: float) -> SourceMotion:
     """The same motion everywhere."""
     flows = [np.full((1, 1, 2), (sign * dx, sign * dy), np.float32) for sign in (1, -1)]
-    return Motion(*(FlowField(width, height, vectors) for vectors in flows))
+    return SourceMotion(*(FlowField(width, height, vectors) for vectors in flows))
 
 
 def texture(width: int, height: int) -> np.ndarray:
@@ -101,7 +101,7 @@ def test_difference_of_motion_is_in_pixels() -> None:
 def test_smallest_pictures_have_values(side: int) -> None:
     """Below what flows accept, sources count as still."""
     one, other = gray(100, side, side), gray(151, side, side)
-    motion = Motion.between(one, one)
+    motion = SourceMotion.between(one, one)
     assert warp_error(one, other, motion) == pytest.approx(0.04)
     assert motion_difference((one, one), (one, other)) == 0.0
 

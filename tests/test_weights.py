@@ -15,8 +15,8 @@ from stages.focus.none import NoFocus
 from stages.frame import Frame
 from stages.masks.weight_maps import WeightMap
 from stages.media import FrameRange, open_decoder
-from stages.topology.refine import RefineOptions
-from stages.triangulate import TriangulateOptions
+from stages.topology.refine_options import RefineOptions
+from stages.triangulate_options import TriangulateOptions
 from tests import media_samples as samples
 from tests.jobs import job_of
 from tests.kernel_samples import frame_of

@@ -10,8 +10,8 @@ from pipeline.loop.result import Animated
 from pipeline.progress import Progress
 from pipeline.track.schema import TABLES
 from stages.media import FrameRange
-from stages.topology.refine import RefineOptions
-from stages.triangulate import TriangulateOptions
+from stages.topology.refine_options import RefineOptions
+from stages.triangulate_options import TriangulateOptions
 from tests import media_samples as samples
 from tests.jobs import job_of
 

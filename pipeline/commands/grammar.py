@@ -11,12 +11,11 @@ from pipeline.commands.examples import ABOUT_ALL, EXAMPLES, shown
 from pipeline.options.command_line import (
     COMMAND_OPTIONS,
     add_job_options,
-    add_range_options,
     commands_with,
     registry_help,
 )
-from pipeline.options.flags import text_value, whole_number
 from pipeline.options.nearest import nearest
+from pipeline.options.values import text_value, whole_number
 from pipeline.progress import CHOICES
 
 ABOUT = "Turn videos into coherent triangulated animations."
@@ -251,7 +250,7 @@ def _add_measure(commands: Any) -> None:
         help="what the output was drawn from; its frames are compared if no range is given",
     )
     parser.add_argument("--json", action="store_true", help="print JSON, with every frame")
-    add_range_options(parser)
+    add_job_options(parser, COMMAND_OPTIONS["measure"])
     _add_telling(parser.add_argument_group("messages"))
 
 

@@ -23,8 +23,9 @@ from stages.media import (
 from stages.media.color.yuv import over_paper
 from stages.render import Renderer
 from stages.snapshot import Snapshot
-from stages.topology.refine import RefineOptions
-from stages.triangulate import TriangulateOptions, Triangulator
+from stages.topology.refine_options import RefineOptions
+from stages.triangulate import Triangulator
+from stages.triangulate_options import TriangulateOptions
 from warp_kernels.device.device import Device
 from warp_kernels.energy.color_model import LINEAR
 from warp_kernels.errors import OptionError
@@ -50,7 +51,7 @@ def draw_sheet(
     *,
     triangles: int = TRIANGLES,
     overwrite: bool = False,
-    names: Iterable[str] = tuple(STYLES),
+    names: Iterable[str] | None = None,
 ) -> None:
     """Write a picture that shows styles.
 
@@ -60,7 +61,7 @@ def draw_sheet(
         output: A still.
         triangles: How many triangles it becomes.
         overwrite: Whether to replace what is there.
-        names: The styles; all of them if left out.
+        names: The styles; None for all that can be used.
 
     Raises:
         MediaError: If the picture cannot be read.
@@ -77,7 +78,8 @@ def draw_sheet(
     # faces count more, as in every other picture
     (alone,) = Attention([Faces()], info, 1, triangles).beside([InShot(frame.index, frame)])
     frame = alone.frame
-    stacks = [stack for name in names for stack in STYLES[name].portraits or (name,)]
+    shown = STYLES.usable if names is None else {name: STYLES[name] for name in names}
+    stacks = [stack for name, cls in shown.items() for stack in cls.portraits or (name,)]
     with Device("auto") as device:
         snapshot = _triangulated(frame, device, triangles)
         cells = [_drawn(stack.split(OVER), snapshot, frame, device) for stack in stacks]

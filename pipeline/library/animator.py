@@ -18,7 +18,7 @@ from pipeline.library.wording import worded
 from pipeline.loop.convert import triangulator_of
 from stages.frame import Frame
 from warp_kernels.errors import OptionError
-from warp_kernels.raster import MAX_SIDE
+from warp_kernels.limits import MAX_SIDE
 
 
 class Animator:

@@ -7,18 +7,21 @@ from typing import Any
 import numpy as np
 
 from pipeline.library.device import opened_device
-from pipeline.options.build import build_look, build_run
+from pipeline.options.build import fill, values_of
+from pipeline.options.look import Look
+from pipeline.options.run import Run
 from stages.frame import Frame
 from stages.look.framing import framed
 from stages.render import Renderer
 from stages.snapshot import Snapshot
-from stages.triangulate import TriangulateOptions, Triangulator
+from stages.triangulate import Triangulator
+from stages.triangulate_options import TriangulateOptions
 from warp_kernels.energy.color_model import ColorModel
 from warp_kernels.errors import OptionError
 
 
 def drawn(
-    snapshot: Snapshot, frame: Frame | None, model: ColorModel, values: Mapping[str, Any]
+    snapshot: Snapshot, frame: Frame | None, model: ColorModel, given: Mapping[str, Any]
 ) -> np.ndarray:
     """Draw a snapshot.
 
@@ -26,7 +29,7 @@ def drawn(
         snapshot: The triangles and their colours.
         frame: The picture, or None if it was not kept.
         model: The colour model that was optimised.
-        values: Options of the look and the run, by field name.
+        given: Options of the look and the run, by field name.
 
     Returns:
         Code values, [rows, columns, 3] or [rows, columns, 4] uint8.
@@ -34,7 +37,8 @@ def drawn(
     Raises:
         OptionError: If a value is impossible, or the picture is needed and not there.
     """
-    look, run = build_look(values), build_run(values)
+    values = values_of(given)
+    look, run = fill(Look, values), fill(Run, values)
     styles, fitted = look.shown_styles(model), look.fitted(model)
     size = (snapshot.mesh.width, snapshot.mesh.height)
     framing = look.framing_for(size, Fraction(1))

@@ -4,11 +4,11 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 
 from stages.look.framing import Framing, framing_of
-from stages.masks.regions import Region
+from stages.masks.region import Region
 from warp_kernels.energy.color_model import CONSTANT, LINEAR, ColorModel
 from warp_kernels.errors import OptionError
-from warp_kernels.raster import MAX_SIDE
-from warp_kernels.styles import Flat, Gradient, Style
+from warp_kernels.limits import MAX_SIDE
+from warp_kernels.styles import STYLES, Style
 from warp_kernels.styles.color import parse_color
 
 MAX_BLEND = 250
@@ -30,7 +30,7 @@ class Look:
         metadata={
             "help": "look of the triangles, repeatable from bottom to top "
             "(default: flat, or gradient with --color linear)",
-            "registry": "warp_kernels.styles:STYLES",
+            "registry": STYLES,
             "flag": "style",
         },
     )
@@ -121,7 +121,7 @@ class Look:
         Args:
             model: The colour model that is optimised.
         """
-        return self.styles or ((Gradient() if model.degree > 0 else Flat()),)
+        return self.styles or (STYLES["gradient" if model.degree > 0 else "flat"](),)
 
     def fitted(self, model: ColorModel) -> ColorModel:
         """The colour model of the snapshots: the optimised one, or what a look needs beyond.

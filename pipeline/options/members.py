@@ -1,24 +1,19 @@
 """Members of a registry as users write them: `edges:width=1.5,color=#222`, `importance:MAP.png`."""
 
-import math
+import inspect
 import re
-import types
-import typing
 from collections.abc import Mapping
+from dataclasses import Field, fields
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from pipeline.options.declared import own_first
 from pipeline.options.nearest import nearest
-from stages.masks.gray import read_gray
-from stages.masks.regions import Region
-from stages.media import input_pattern
+from pipeline.options.values import NAMES, kind_of, rule_for
+from stages.masks.region import Region
+from stages.media.naming import input_pattern
 from warp_kernels.errors import OptionError
 
 _FRAMES = re.compile(r"[0-9]+(,[0-9]+)*")
-_SWITCHES = {"true": True, "yes": True, "1": True, "false": False, "no": False, "0": False}
 
 
 def parse_member(flag: str, text: str, registry: Mapping[str, type]) -> Any:
@@ -36,8 +31,8 @@ def parse_member(flag: str, text: str, registry: Mapping[str, type]) -> Any:
     name, _, rest = text.partition(":")
     if name not in registry:
         raise OptionError(f"{flag} {text}: {_no_member(text, registry)}")
-    cls = registry[name]
-    kinds = _parameters(cls)
+    cls: Any = _class_of(f"{flag} {text}", name, registry)
+    kinds = {field.name: kind_of(field).removesuffix(" | None") for field in parameters(cls)}
     values: dict[str, Any] = {}
     for key, value in _pairs(flag, text, rest, kinds):
         if key not in kinds:
@@ -58,9 +53,9 @@ def _no_member(text: str, registry: Mapping[str, type]) -> str:
     name, _, rest = text.partition(":")
     owner, equals, value = name.partition("=")
     if equals and owner in registry:
-        first = next(iter(_parameters(registry[owner])), None)
+        first = next(iter(parameters(registry[owner])), None)
         if first is not None:
-            written = ",".join(filter(None, [f"{first}={value}", rest]))
+            written = ",".join(filter(None, [f"{first.name}={value}", rest]))
             return f"a parameter has its name after a colon; write {owner}:{written}"
     return f"no {name!r}; {nearest(name, registry)}"
 
@@ -89,6 +84,14 @@ def parse_region(flag: str, text: str, styles: Mapping[str, type]) -> Region:
     )
 
 
+def _class_of(what: str, name: str, registry: Mapping[str, type]) -> type:
+    """The class of a member; that of another package may not be there as it should."""
+    try:
+        return registry[name]
+    except OptionError as error:
+        raise OptionError(f"{what}: {error}") from error
+
+
 def _mask_and_frames(flag: str, text: str) -> tuple[str, tuple[int, ...]]:
     """A mask and the frames that it was drawn for, unless the whole is the name of a file."""
     mask, _, frames = text.rpartition("@")
@@ -110,23 +113,20 @@ def _is_there(name: str) -> bool:
     return Path(name).exists() if pattern is None else bool(pattern.numbers())
 
 
-def _parameters(cls: type) -> dict[str, Any]:
-    """Types of a dataclass's parameters, without None, by name; its own before inherited ones."""
-    hints = typing.get_type_hints(cls)
-    fields = (field for field in own_first(cls) if field.init)
-    return {field.name: _without_none(hints[field.name]) for field in fields}
+def parameters(cls: Any) -> list[Field[Any]]:
+    """What a member is made with: its own fields, then those that it inherits, the nearest first.
+
+    Args:
+        cls: Its class, a dataclass.
+    """
+    order = [name for base in cls.__mro__ for name in inspect.get_annotations(base)]
+    return sorted((f for f in fields(cls) if f.init), key=lambda field: order.index(field.name))
 
 
-def _without_none(hint: Any) -> Any:
-    if isinstance(hint, types.UnionType):
-        return next(part for part in typing.get_args(hint) if part is not types.NoneType)
-    return hint
-
-
-def _pairs(flag: str, text: str, rest: str, kinds: Mapping[str, Any]) -> list[tuple[str, str]]:
+def _pairs(flag: str, text: str, rest: str, kinds: Mapping[str, str]) -> list[tuple[str, str]]:
     """Split what follows a name into keys and values."""
     first = next(iter(kinds), None)
-    takes_bare = first is not None and kinds[first] in (str, Path, np.ndarray)
+    takes_bare = first is not None and kinds[first] in NAMES
     if first is not None and takes_bare and Path(rest).is_file():
         return [(first, rest)]  # whatever signs its name holds
     pairs = []
@@ -140,20 +140,10 @@ def _pairs(flag: str, text: str, rest: str, kinds: Mapping[str, Any]) -> list[tu
     return pairs
 
 
-def _convert(what: str, text: str, kind: Any) -> Any:
+def _convert(what: str, text: str, kind: str) -> Any:
     """Value of a parameter of a given type."""
+    rule = rule_for(kind)
     try:
-        if kind is bool:
-            return _SWITCHES[text.lower()]
-        if kind is int:
-            return int(text)
-        if kind is float and math.isfinite(number := float(text)):
-            return number
+        return rule.read(text)
     except (ValueError, KeyError):
-        pass
-    if kind is np.ndarray:
-        return read_gray(text)
-    if kind in (str, Path):
-        return kind(text)
-    wanted = {bool: "true or false", int: "a whole number", float: "a number"}[kind]
-    raise OptionError(f"{what}={text}: write {wanted}")
+        raise OptionError(f"{what}={text}: write {rule.noun}") from None

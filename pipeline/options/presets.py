@@ -4,7 +4,6 @@ import tomllib
 from pathlib import Path
 
 from pipeline.options.command_line import job_options
-from pipeline.options.option_value import option_value
 from pipeline.options.text_file import read_text
 from warp_kernels.errors import OptionError
 
@@ -47,5 +46,5 @@ def read_preset(name: str) -> dict[str, object]:
             raise OptionError(
                 f"--preset {name}: unknown option {key!r}; the options are {', '.join(options)}"
             )
-        values[option.dest] = option_value(option, value, f"--preset {name}: {key}")
+        values[option.dest] = option.value(value, f"--preset {name}: {key}")
     return values

@@ -2,11 +2,13 @@
 
 from dataclasses import dataclass
 from fractions import Fraction
-
-import numpy as np
+from typing import TYPE_CHECKING
 
 from warp_kernels.errors import OptionError
-from warp_kernels.raster import MAX_SIDE
+from warp_kernels.limits import MAX_SIDE
+
+if TYPE_CHECKING:
+    import numpy as np
 
 
 @dataclass(frozen=True)
@@ -71,8 +73,8 @@ def framing_of(
 
 
 def framed(
-    pixels: np.ndarray, framing: Framing, background: tuple[float, float, float] | None
-) -> np.ndarray:
+    pixels: "np.ndarray", framing: Framing, background: tuple[float, float, float] | None
+) -> "np.ndarray":
     """Put a picture on its canvas.
 
     Args:
@@ -84,6 +86,8 @@ def framed(
     Returns:
         Code values, [rows, columns, 3] uint8, or 4 channels if something is transparent.
     """
+    import numpy as np
+
     if background is not None and pixels.shape[2] == 4:
         pixels = _over(pixels, background)
     if framing.is_plain:
@@ -100,8 +104,10 @@ def framed(
     return canvas
 
 
-def _over(rgba: np.ndarray, background: tuple[float, float, float]) -> np.ndarray:
+def _over(rgba: "np.ndarray", background: tuple[float, float, float]) -> "np.ndarray":
     """A picture over one colour, [H, W, 3] uint8."""
+    import numpy as np
+
     alpha = rgba[..., 3:].astype(np.uint32)
     mixed = rgba[..., :3] * alpha + np.rint(background).astype(np.uint32) * (255 - alpha)
     return ((mixed + 127) // 255).astype(np.uint8)

@@ -15,12 +15,12 @@ from warp_kernels.drawing.paint import Paint, shapes_of
 from warp_kernels.drawing.sample_points import LIST, parts_of_a_pixel
 from warp_kernels.drawing.shade import record_shade, shade_kernel
 from warp_kernels.drawing.triangle_setup import prepare_kernel, record_prepare
-from warp_kernels.raster import MAX_SIDE
+from warp_kernels.limits import MAX_SIDE
 from warp_kernels.scene.places import hashes_of, to_places
 from warp_kernels.scene.scene import FIXED, FRACTION_BITS, Numbers, Scene, StyleParameters
 from warp_kernels.scene.source_picture import reduced, step_for
 from warp_kernels.scene.stroke_lay import own_lay
-from warp_kernels.scene.texels import Texture, pack
+from warp_kernels.scene.texels import Texels, pack
 from warp_kernels.styles import Style
 
 SAMPLES = 3
@@ -51,7 +51,7 @@ class Canvas:
         output: tuple[int, int],
         styles: tuple[Style, ...],
         masked: tuple[Style, ...],
-        textures: list[Texture | None],
+        textures: list[Texels | None],
         followed: tuple[int, ...] = (),
     ) -> None:
         self.device = device
@@ -105,7 +105,7 @@ class Canvas:
             "parts": self._filled(parts_of_a_pixel(self.samples, sample_size), int),
         }
 
-    def _parameters_of(self, styles: tuple[Style, ...], textures: list[Texture | None]) -> wp.array:
+    def _parameters_of(self, styles: tuple[Style, ...], textures: list[Texels | None]) -> wp.array:
         """What the styles were asked for; their textures become a part of the scene."""
         texels, levels, ranges = pack(textures)
         self._steady["texels"] = self._filled(texels, wp.uint8)

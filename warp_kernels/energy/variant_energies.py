@@ -21,9 +21,6 @@ wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 SMALLEST_PART = 256
 """Triangles whose variants take about as long as waking up a second thread."""
 
-SUMS = ("edges", "fragments")
-"""The two ways to sum, see `edge_moments` and `fragments`."""
-
 
 @cache
 def _edge_energy_kernel(layout: MomentLayout) -> Any:

@@ -2,21 +2,26 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, fields
-from typing import Any, ClassVar
-
-import numpy as np
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from warp_kernels.errors import OptionError
-from warp_kernels.scene.texels import Texture
 from warp_kernels.styles.color import parse_color
 
-ReadPicture = Callable[[str], np.ndarray]
+if TYPE_CHECKING:
+    import numpy as np
+
+    from warp_kernels.scene.texels import Texels
+
+ReadPicture = Callable[[str], "np.ndarray"]
 """Reads a picture by its name as brightness, 0 (black) to 1 (white), [rows, columns]."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Style:
     """A look: parameters that the user chooses and a shader that draws.
+
+    The help imports all styles, so their modules are light: shaders are `Imported` when they are
+    asked for, and methods import what they need.
 
     Parameters are fields; their metadata says what they may be, and that is checked here:
 
@@ -85,7 +90,7 @@ class Style:
         """At most sixteen numbers for the shader."""
         return ()
 
-    def texture(self, read: ReadPicture) -> Texture | None:
+    def texture(self, read: ReadPicture) -> "Texels | None":
         """The texture that its shader looks into, or None.
 
         Args:
