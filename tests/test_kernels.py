@@ -25,7 +25,7 @@ from warp_kernels.device.device import Device
 from warp_kernels.device.kernel_turn import waited_turn
 from warp_kernels.device.kernels import Kernels
 from warp_kernels.energy.color_model import CONSTANT, LINEAR
-from warp_kernels.styles import Flat
+from warp_kernels.styles.flat import Flat
 
 
 class Named(SimpleNamespace):
