@@ -106,6 +106,26 @@ class Progress:
             summary: What to say.
         """
 
+    def file(self, number: int, total: int, source: str, output: str) -> None:
+        """Tell that one of several inputs is begun.
+
+        Args:
+            number: Which one, from 1.
+            total: How many there are.
+            source: Its name.
+            output: What becomes of it.
+        """
+
+    def finish_all(self, line: str, frames: int, failed: list[str], code: int) -> None:
+        """Tell what came of several inputs.
+
+        Args:
+            line: All of it, for people.
+            frames: Frames of those that were done.
+            failed: Names of those that were not.
+            code: The exit code.
+        """
+
     def close(self) -> None:
         """Leave the screen tidy, whether all went well or not."""
 
@@ -187,6 +207,14 @@ class PlainProgress(Progress):
         """Tell the summary."""
         self._print(str(summary))
 
+    def file(self, number: int, total: int, source: str, output: str) -> None:
+        """Tell its name."""
+        self._print(f"{number}/{total} {source}")
+
+    def finish_all(self, line: str, frames: int, failed: list[str], code: int) -> None:
+        """Tell the summary of all."""
+        self._print(line)
+
 
 class BarProgress(Progress):
     """A bar on a terminal."""
@@ -235,6 +263,14 @@ class BarProgress(Progress):
         self.close()
         self._print(str(summary))
 
+    def file(self, number: int, total: int, source: str, output: str) -> None:
+        """Tell its name."""
+        self._print(f"{number}/{total} {source}")
+
+    def finish_all(self, line: str, frames: int, failed: list[str], code: int) -> None:
+        """Tell the summary of all."""
+        self._print(line)
+
     def close(self) -> None:
         """Leave the bar as it stands and go on below it."""
         if self._bar is not None:
@@ -249,7 +285,8 @@ class BarProgress(Progress):
 
 
 class JsonProgress(Progress):
-    """One JSON object a line, told apart by `event`: kernels, frame, note, warning, done."""
+    """One JSON object a line, told apart by `event`: kernels, frame, note, warning, done;
+    with several inputs also file and, at last, all done."""
 
     def kernels(self, done: int, total: int | None) -> None:
         """Write how far compiling is; the total is null before anything is known."""
@@ -283,6 +320,14 @@ class JsonProgress(Progress):
             mean_rmse=summary.mean_rmse,
             output=str(summary.output),
         )
+
+    def file(self, number: int, total: int, source: str, output: str) -> None:
+        """Write its name and that of the output."""
+        self._write("file", number=number, total=total, source=source, output=output)
+
+    def finish_all(self, line: str, frames: int, failed: list[str], code: int) -> None:
+        """Write what came of all."""
+        self._write("all done", frames=frames, failed=failed, code=code)
 
     def _write(self, event: str, **values: object) -> None:
         tell(json.dumps({"event": event, **values}), sys.stdout)
