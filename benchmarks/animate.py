@@ -21,7 +21,7 @@ from timing import machine, program, table
 
 import pipeline.loop.animate
 import pipeline.loop.convert
-from pipeline.job import Job
+from pipeline.options.job import Job
 from pipeline.options.output import Output
 from pipeline.options.run import Run
 from pipeline.options.solve_options import SolveOptions

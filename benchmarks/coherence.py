@@ -24,8 +24,8 @@ from timing import program, table
 
 from pipeline.compare.measure import measure
 from pipeline.compare.report import FrameFigures, Report
-from pipeline.job import Job
 from pipeline.loop.animate import animate
+from pipeline.options.job import Job
 from pipeline.options.output import Output
 from pipeline.options.solve_options import SolveOptions
 from pipeline.options.values import size

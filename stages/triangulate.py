@@ -23,8 +23,8 @@ from stages.topology import TOPOLOGIES
 from stages.topology.appraise import Appraiser
 from stages.topology.goal import SLIVER_HEIGHT, Goal
 from stages.triangulate_options import TriangulateOptions
+from warp_kernels.color_model import CHANNELS, ColorModel
 from warp_kernels.device.device import Device
-from warp_kernels.energy.color_model import CHANNELS, ColorModel
 from warp_kernels.energy.solver_kernels import limiting_kernels, solving_kernels
 from warp_kernels.energy.workspace import Workspace
 
@@ -147,6 +147,8 @@ class Triangulator:
             bench = self._weighted
             bench.load(pixels, frame.weights)
         self._use(bench)
+        if self._fitting is not self._even.workspace:
+            self._fitting.load_image(frame.pixels)
 
     def next(self, frame: Frame, seed: Carried, earlier: Snapshot | None = None) -> Snapshot:
         """Triangulate a frame that continues a shot.
@@ -165,7 +167,7 @@ class Triangulator:
         spring = SPRING * self._rmse(seed.mesh) ** 2
         unrest = self._unrest(seed, earlier)
         if unrest is not None:
-            seed = replace(seed, trust=seed.trust * (1.0 - unrest.values))
+            seed = unrest.freed(seed)
         mesh = self._follow(seed.mesh, seed, spring, each, frame.weights)
         if unrest is not None:
             renewing = int(RENEWED * rounds)
@@ -221,6 +223,8 @@ class Triangulator:
         """
         if self._fitting is self._even.workspace:
             self._even.load(frame.pixels)
+        else:
+            self._fitting.load_image(frame.pixels)
         return self._snapshot(frame, mesh)
 
     def recall(self, frame: Frame, snapshot: Snapshot) -> None:
@@ -307,8 +311,6 @@ class Triangulator:
     def _snapshot(self, frame: Frame, mesh: Mesh) -> Snapshot:
         """Fit the colours to a mesh that was just optimised, by all pixels alike."""
         fitting = self._fitting
-        if fitting is not self._even.workspace:
-            fitting.load_image(frame.pixels)
         place_mesh(fitting, mesh)
         coefficients, energies, counts = fitting.fit()
         coefficients, energies, limits = self._limiter.limit(mesh, coefficients, energies)

@@ -6,7 +6,7 @@ from stages.optimize_options import OptimizeOptions
 from stages.spaces import SPACES
 from stages.topology import TOPOLOGIES
 from stages.topology.refine_options import RefineOptions
-from warp_kernels.energy.color_model import COLOR_MODELS, ColorModel
+from warp_kernels.color_model import COLOR_MODELS, ColorModel
 from warp_kernels.energy.sums import SUMS
 from warp_kernels.errors import OptionError
 

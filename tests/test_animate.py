@@ -13,9 +13,9 @@ import numpy as np
 import pytest
 from scipy.ndimage import gaussian_filter
 
-from pipeline.job import Job
 from pipeline.loop.animate import animate
 from pipeline.loop.result import Animated
+from pipeline.options.job import Job
 from pipeline.progress import Progress
 from pipeline.track import TrackReader
 from sample_videos.make_shapes import CUT_FRAME, FRAME_COUNT

@@ -21,7 +21,7 @@ from stages.flows import FLOWS
 from stages.layouts import LAYOUTS
 from stages.media import open_decoder
 from tests import media_samples as samples
-from warp_kernels.energy.color_model import COLOR_MODELS
+from warp_kernels.color_model import COLOR_MODELS
 from warp_kernels.errors import MediaError, OptionError, OutputError, TrackError, TrimotionError
 from warp_kernels.styles import STYLES
 

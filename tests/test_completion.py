@@ -5,12 +5,12 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from pipeline.options.output_size import NAMED_SIZES
 
 from pipeline import cli
 from pipeline.cli import main
 from pipeline.commands.completion import SHELLS
 from pipeline.commands.grammar import build_parser
-from pipeline.options.output_size import NAMED_SIZES
 from stages.focus import FOCI
 from warp_kernels.styles import STYLES
 

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from pipeline.cli import main
-from pipeline.options.output_size import NAMED_SIZES, parse_size
 from stages.look.framing import Framing, framed, framing_of
+from stages.look.output_size import NAMED_SIZES, parse_size
 from stages.media import probe
 from warp_kernels.errors import OptionError
 

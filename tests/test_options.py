@@ -31,7 +31,8 @@ MEMBERS = [
 
 def parse(*options: str) -> dict:
     """Values that the command line gives."""
-    return vars(build_parser().parse_args(["animate", "in.mp4", "-o", "out.mp4", *options]))
+    line = ["animate", "in.mp4", "-o", "out.mp4", *options]
+    return {**vars(build_parser().parse_args(line)), "source": "in.mp4"}
 
 
 def write_preset(folder: Path, text: str) -> str:

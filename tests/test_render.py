@@ -11,8 +11,8 @@ from stages.mesh import Mesh, mesh_of
 from stages.render import Renderer
 from stages.snapshot import Snapshot
 from tests.kernel_samples import noise, random_mesh, snapshot_of, waves
+from warp_kernels.color_model import CONSTANT, LINEAR, QUADRATIC
 from warp_kernels.device.device import Device
-from warp_kernels.energy.color_model import CONSTANT, LINEAR, QUADRATIC
 from warp_kernels.errors import OptionError
 from warp_kernels.limits import MAX_SIDE
 from warp_kernels.styles import STYLES, Style

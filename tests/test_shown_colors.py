@@ -41,9 +41,9 @@ from tests.kernel_samples import frame_of, noise, poisoned_workspace, random_mes
 from tests.meshes import scrambled
 from tests.oracles.coverage import covered_pixels, rounded
 from tests.tracks import solve_to, write_clip
+from warp_kernels.color_model import COLOR_MODELS, CONSTANT, ColorModel
 from warp_kernels.device.device import Device
 from warp_kernels.energy.color_extremes import Extremes
-from warp_kernels.energy.color_model import COLOR_MODELS, CONSTANT, ColorModel
 from warp_kernels.energy.nearby_colors import LEEWAY
 from warp_kernels.styles import STYLES, Style
 from warp_kernels.styles.flat import Flat

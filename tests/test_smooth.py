@@ -18,7 +18,7 @@ from stages.snapshot import Snapshot, with_origins
 from stages.validate import assert_valid
 from tests.meshes import random_mesh, two_triangles
 from tests.snapshots import restless_shot, snapshot_with
-from warp_kernels.energy.color_model import CONSTANT, LINEAR, ColorModel
+from warp_kernels.color_model import CONSTANT, LINEAR, ColorModel
 from warp_kernels.errors import OptionError
 
 

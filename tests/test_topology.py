@@ -24,8 +24,8 @@ from tests.kernel_samples import (
     random_weights,
     waves,
 )
+from warp_kernels.color_model import COLOR_MODELS, LINEAR, ColorModel
 from warp_kernels.device.device import Device
-from warp_kernels.energy.color_model import COLOR_MODELS, LINEAR, ColorModel
 from warp_kernels.energy.topology_gains import IMPOSSIBLE, SPLIT_PLACES
 
 WIDTH, HEIGHT = 61, 47

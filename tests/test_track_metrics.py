@@ -33,7 +33,7 @@ from stages.snapshot import Snapshot
 from tests import media_samples as samples
 from tests.jobs import job_of
 from tests.tracks import CUT, QUICK, write_clip
-from warp_kernels.energy.color_model import CONSTANT, LINEAR, ColorModel
+from warp_kernels.color_model import CONSTANT, LINEAR, ColorModel
 
 TRACK_KEYS = {"births", "deaths", "flips", "jitter", "pop_energy", "inverted"}
 

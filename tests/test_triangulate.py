@@ -16,8 +16,8 @@ from stages.triangulate import Triangulator
 from stages.triangulate_options import TriangulateOptions
 from stages.validate import assert_valid
 from tests.kernel_samples import frame_of, noise, waves
+from warp_kernels.color_model import COLOR_MODELS, LINEAR
 from warp_kernels.device.device import Device
-from warp_kernels.energy.color_model import COLOR_MODELS, LINEAR
 from warp_kernels.errors import OptionError
 
 WIDTH, HEIGHT = 151, 113

@@ -75,8 +75,9 @@ def batch_of(command: str, inputs: Sequence[str], output: str) -> Batch | None:
         )
         named = "out/" if folder.suffix else f"{output}/"
         raise OptionError(f"-o {output}: {several}; name a folder for the outputs, such as {named}")
-    made = MADE.get(command)
-    items = tuple(Item(source, output_in(f"{output}/", source, made)) for source in sources)
+    items = tuple(
+        Item(source, output_in(f"{output}/", source, _made(command, source))) for source in sources
+    )
     _refuse_collisions(items)
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -84,6 +85,15 @@ def batch_of(command: str, inputs: Sequence[str], output: str) -> Batch | None:
         reason = str(error.strerror).lower()
         raise OutputError(folder, f"cannot be made ({reason})", "choose another folder") from error
     return Batch(items, folder, tuple(notes))
+
+
+def _made(command: str, source: str) -> str | None:
+    """Ending of an output, where it does not follow from the input's."""
+    if command != "render":
+        return MADE.get(command)
+    from pipeline.track.kind import drawn_ending
+
+    return drawn_ending(Path(source))
 
 
 def _files_of(command: str, name: str, notes: list[str]) -> Iterator[str]:

@@ -5,8 +5,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from pipeline.job import Job
     from pipeline.loop.result import Animated
+    from pipeline.options.job import Job
     from pipeline.progress import Progress
 
 
@@ -40,10 +40,11 @@ def _solve(arguments: argparse.Namespace) -> "Animated":
 
 def _render(arguments: argparse.Namespace) -> "Animated":
     from pipeline.options.build import build_render
+    from pipeline.track.kind import drawn_ending
 
     path = Path(arguments.track)
     source = None if arguments.source is None else Path(arguments.source)
-    wanted = build_render(_given(arguments), path)
+    wanted = build_render(_given(arguments), path, drawn_ending(path))
     from pipeline.look.render_job import render_job
     from pipeline.loop.render import render
     from pipeline.track import TrackReader

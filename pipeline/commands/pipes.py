@@ -67,8 +67,11 @@ def _ending_for(arguments: argparse.Namespace) -> str:
     """The format that suits what is written, where the user does not say it: a still is PNG."""
     if arguments.command in FORMATS:
         return FORMATS[arguments.command]
-    source = arguments.track if arguments.command == "render" else arguments.source
-    return ".png" if is_still(Path(source)) else ".mkv"
+    if arguments.command != "render":
+        return ".png" if is_still(Path(arguments.source)) else ".mkv"
+    from pipeline.track.kind import is_of_a_still
+
+    return ".png" if is_of_a_still(Path(arguments.track)) else ".mkv"
 
 
 def _received(path: Path) -> Path:

@@ -26,8 +26,8 @@ from stages.snapshot import Snapshot
 from stages.topology.refine_options import RefineOptions
 from stages.triangulate import Triangulator
 from stages.triangulate_options import TriangulateOptions
+from warp_kernels.color_model import LINEAR
 from warp_kernels.device.device import Device
-from warp_kernels.energy.color_model import LINEAR
 from warp_kernels.errors import OptionError
 from warp_kernels.styles import STYLES
 

@@ -16,7 +16,7 @@ from stages.render import Renderer
 from stages.snapshot import Snapshot
 from stages.triangulate import Triangulator
 from stages.triangulate_options import TriangulateOptions
-from warp_kernels.energy.color_model import ColorModel
+from warp_kernels.color_model import ColorModel
 from warp_kernels.errors import OptionError
 
 

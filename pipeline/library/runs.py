@@ -24,8 +24,8 @@ from pipeline.progress import Progress, Summary
 
 if TYPE_CHECKING:
     from pipeline.compare.report import Report
-    from pipeline.job import Job
     from pipeline.loop.result import Animated
+    from pipeline.options.job import Job
 
 
 @with_keywords("animate")
@@ -106,8 +106,9 @@ def render(
     from pipeline.loop.render import render as draw
     from pipeline.options.build import build_render
     from pipeline.track import TrackReader
+    from pipeline.track.kind import drawn_ending
 
-    wanted = build_render({**given, "output": target}, path)
+    wanted = build_render({**given, "output": target}, path, drawn_ending(path))
     with TrackReader(path) as reader, progress_for(progress) as told:
         made = render_job(reader, *wanted, moved)
         drawn = draw(made.job, reader, made.info, told)

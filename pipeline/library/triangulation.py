@@ -14,7 +14,7 @@ from stages.frame import Frame
 from stages.look.paint import paint_of
 from stages.media.writing.still_writer import encode_still
 from stages.snapshot import Snapshot
-from warp_kernels.energy.color_model import COLOR_MODELS
+from warp_kernels.color_model import COLOR_MODELS
 
 
 @dataclass(frozen=True)

@@ -5,9 +5,9 @@ from dataclasses import replace
 from types import TracebackType
 
 from pipeline.envelope import Solved
-from pipeline.job import Job
 from pipeline.look.region_masks import own_mask
 from pipeline.look.smooth import Smoother
+from pipeline.options.job import Job
 from stages.look.fading import Fading
 from stages.look.framing import Framing, framed
 from stages.look.strokes import Strokes

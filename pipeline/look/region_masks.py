@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from pipeline.job import Job
+from pipeline.options.job import Job
 from pipeline.options.output import Output
 from pipeline.options.solve_options import SolveOptions
 from pipeline.track import TrackReader

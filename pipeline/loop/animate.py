@@ -10,7 +10,6 @@ from time import perf_counter
 
 import numpy as np
 
-from pipeline.job import Job
 from pipeline.look.drawing import check_drawing
 from pipeline.look.region_masks import check_followed
 from pipeline.look.render_job import render_job
@@ -21,6 +20,7 @@ from pipeline.loop.processes import InProcesses
 from pipeline.loop.ranges import InThisProcess, Part, RangeRunner, Work
 from pipeline.loop.render import render
 from pipeline.loop.result import Animated
+from pipeline.options.job import Job
 from pipeline.options.output import Output
 from pipeline.options.run import Run
 from pipeline.options.solve_options import SolveOptions
@@ -30,7 +30,7 @@ from pipeline.track.resume import check_track_place
 from pipeline.track.schema import ENDING
 from stages.media import probe
 from stages.media.writing.commit import PendingFile
-from warp_kernels.energy.color_model import ColorModel
+from warp_kernels.color_model import ColorModel
 from warp_kernels.errors import OptionError
 
 

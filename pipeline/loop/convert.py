@@ -10,7 +10,6 @@ from time import perf_counter
 import numpy as np
 
 from pipeline.envelope import MeshFrom, Prepared, Solved
-from pipeline.job import Job
 from pipeline.look.drawing import Drawing, check_drawing
 from pipeline.look.source_pictures import source_pictures
 from pipeline.loop.attention import Attention
@@ -18,6 +17,7 @@ from pipeline.loop.motion import check_cuts, open_around
 from pipeline.loop.prepare import prepared
 from pipeline.loop.result import Animated, Tally
 from pipeline.loop.threads import Behind, ahead
+from pipeline.options.job import Job
 from pipeline.options.solve_options import SolveOptions
 from pipeline.progress import Progress
 from pipeline.track import TrackReader, TrackWriter
@@ -27,8 +27,8 @@ from stages.media import Decoder
 from stages.media.expected_frames import expected_frames
 from stages.motion.advect import advect
 from stages.triangulate import Triangulator
+from warp_kernels.color_model import ColorModel
 from warp_kernels.device.device import Device
-from warp_kernels.energy.color_model import ColorModel
 
 DECODED_AHEAD = 3
 """Decoded frames that may wait."""

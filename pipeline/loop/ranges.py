@@ -4,16 +4,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Protocol
 
-from pipeline.job import Job
 from pipeline.loop.convert import convert
 from pipeline.loop.result import Animated
+from pipeline.options.job import Job
 from pipeline.options.output import Output
 from pipeline.options.run import Run
 from pipeline.options.solve_options import SolveOptions
 from pipeline.progress import Progress
 from pipeline.track import TrackReader
 from stages.media import FrameRange
-from warp_kernels.energy.color_model import ColorModel
+from warp_kernels.color_model import ColorModel
 
 
 @dataclass(frozen=True)

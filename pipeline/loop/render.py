@@ -4,7 +4,6 @@ from collections.abc import Iterator
 from time import perf_counter
 
 from pipeline.envelope import Solved
-from pipeline.job import Job
 from pipeline.look.drawing import Drawing, check_drawing
 from pipeline.look.region_members import followed_shares
 from pipeline.look.rows_around import rows_around
@@ -12,13 +11,14 @@ from pipeline.look.source_pictures import source_pictures
 from pipeline.loop.convert import SOLVED_BEHIND, triangulator_of
 from pipeline.loop.result import Animated, Tally
 from pipeline.loop.threads import Behind
+from pipeline.options.job import Job
 from pipeline.options.solve_options import SolveOptions
 from pipeline.progress import Progress
 from pipeline.track import FrameRow, TrackReader
 from stages.media import FrameRange, MediaInfo, open_decoder
 from stages.snapshot import Snapshot
+from warp_kernels.color_model import ColorModel
 from warp_kernels.device.device import Device
-from warp_kernels.energy.color_model import ColorModel
 
 
 def render(job: Job, track: TrackReader, info: MediaInfo, progress: Progress) -> Animated:

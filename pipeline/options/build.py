@@ -2,12 +2,11 @@
 
 import dataclasses
 from collections.abc import Mapping
-from fractions import Fraction
 from pathlib import Path
 from typing import Any, TypeVar
 
-from pipeline.job import Job
 from pipeline.options.command_line import job_options
+from pipeline.options.job import Job
 from pipeline.options.look import Look
 from pipeline.options.members import parse_member, parse_region
 from pipeline.options.output import Output
@@ -22,28 +21,18 @@ Part = TypeVar("Part")
 
 
 def build_job(given: Mapping[str, Any]) -> Job:
-    """Make all options of a run; what is not given takes the default of its dataclass.
-
-    Args:
-        given: See `values_of`.
-
-    Raises:
-        OptionError: If a value is impossible.
-        MediaError: If a picture that an option names cannot be read.
-    """
+    """Make all options of a run from what a user gave, see `values_of`."""
     values = values_of(given)
     solve, look = fill(SolveOptions, values), fill(Look, values)
     return Job(solve, look, fill(Output, values), fill(Run, values))
 
 
-def build_render(given: Mapping[str, Any], track: Path) -> tuple[FrameRange, Look, Output, Run]:
-    """Make what a track is drawn with: frames, look, output, run.
-
-    Args:
-        given: As for `build_job`; without a source.
-        track: Names the output where that is a folder.
-    """
-    values = values_of({**given, "source": track, "track": None})
+def build_render(
+    given: Mapping[str, Any], track: Path, ending: str
+) -> tuple[FrameRange, Look, Output, Run]:
+    """Make what a track is drawn with; it names the output, with an ending, in a folder."""
+    output = output_in(given["output"], track, ending)
+    values = values_of({**given, "output": str(output), "source": track, "track": None})
     fill(SolveOptions, values)  # a preset may hold such options, and mistakes in them are told
     return values["frame_range"], fill(Look, values), fill(Output, values), fill(Run, values)
 
@@ -53,8 +42,7 @@ def values_of(given: Mapping[str, Any]) -> dict[str, Any]:
 
     Args:
         given: Values by field name, as the command line or a preset gives them, with the name of
-            the `source`, of the `output` if a picture is drawn, and of the `track` if one is
-            written.
+            the `source`, of the `output` if a picture is drawn, of the `track` if one is written.
 
     Raises:
         OptionError: If a value is impossible.
@@ -84,12 +72,7 @@ def values_of(given: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def fill(cls: type[Part], values: Mapping[str, Any]) -> Part:
-    """Make a dataclass and those inside it from one flat table of values.
-
-    Args:
-        cls: The dataclass.
-        values: Values by field name; every dataclass takes those that it knows.
-    """
+    """Make a dataclass and those inside it, each of the values that it knows by field name."""
     arguments = {}
     for field in dataclasses.fields(cls):  # type: ignore[arg-type]
         nested = field.default_factory
@@ -101,17 +84,9 @@ def fill(cls: type[Part], values: Mapping[str, Any]) -> Part:
 
 
 def frame_range(given: Mapping[str, Any]) -> FrameRange:
-    """The range that `--frames`, `--start` and `--end` describe together.
-
-    Args:
-        given: Values by name; other names are ignored.
-
-    Raises:
-        OptionError: If the range is impossible.
-    """
+    """The range that `--frames`, `--start` and `--end` describe together."""
     frames = FrameRange.parse(given["frames"]) if "frames" in given else FrameRange()
-    return frames.between(_time(given, "start"), _time(given, "end"))
-
-
-def _time(given: Mapping[str, Any], name: str) -> Fraction | None:
-    return parse_time(given[name], f"--{name}") if name in given else None
+    start, end = (
+        parse_time(given[name], f"--{name}") if name in given else None for name in ("start", "end")
+    )
+    return frames.between(start, end)

@@ -1,17 +1,20 @@
 """The options of `animate`: fields, with help, of the dataclasses that are parts of a `Job`."""
 
 import argparse
+import reprlib
+from argparse import ArgumentTypeError
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import MISSING, dataclass, fields
-from functools import cache
-from typing import Any
+from fractions import Fraction
+from functools import cache, partial
+from typing import Any, cast
 
 from pipeline.options.look import Look
-from pipeline.options.members import parameters
+from pipeline.options.members import written
 from pipeline.options.output import Output
 from pipeline.options.run import Run
 from pipeline.options.solve_options import SolveOptions
-from pipeline.options.values import kind_of, plain_value, reader_for
+from pipeline.options.values import kind_of, read_value
 from warp_kernels.errors import OptionError
 from warp_kernels.registry import Registry
 
@@ -35,7 +38,7 @@ EXCLUSIVE = ("output_size", "scale")
 
 @dataclass(frozen=True)
 class Option:
-    """One option of the command line."""
+    """A field with help of one of the dataclasses of a job, as an option of the command line."""
 
     flag: str
     """Its name without dashes in front; also its key in a preset."""
@@ -48,7 +51,7 @@ class Option:
     default: Any
     """What is taken if it is not given, as it would be written."""
     metadata: Mapping[str, Any]
-    """What the field says; see `pipeline.job`."""
+    """What the field says; see `pipeline.options.job`."""
 
     @property
     def is_switch(self) -> bool:
@@ -71,28 +74,21 @@ class Option:
         return self.metadata.get("registry")
 
     @property
-    def choices(self) -> tuple[str, ...] | None:
-        """The values that it may have, if they can be listed."""
-        return self.metadata.get("choices")
-
-    @property
     def help(self) -> str:
         """What it does, with its default."""
         text = str(self.metadata["help"])
         if self.is_switch:
             return text if self.switched else f"do not {text}"
-        if self.default in (None, ()):
-            return text
         shown = f"{self.default:g}" if isinstance(self.default, float) else self.default
-        return f"{text} (default: {shown})"
+        return text if self.default in (None, ()) else f"{text} (default: {shown})"
 
     @property
-    def metavar(self) -> str | None:
+    def metavar(self) -> str:
         """How its value is shown."""
         if self.registry is not None:
             return "SPEC" if self.is_repeatable else "|".join(self.registry)
-        if self.choices is not None:
-            return "|".join(self.choices)
+        if "choices" in self.metadata:
+            return "|".join(self.metadata["choices"])
         kinds = {"int": "N", "float": "X"}
         usual = kinds.get(self.kind.removesuffix(" | None"), self.dest.split("_")[-1].upper())
         return str(self.metadata.get("metavar", usual))
@@ -100,25 +96,33 @@ class Option:
     def value(self, given: object, what: str, sign: str = " = ") -> object:
         """The value that the command line would give for one of a file or a program.
 
-        Args:
-            given: A number, a text, true or false, or a list of these if it is repeatable.
-            what: Where it stands, for messages.
-            sign: What stands between that and the value in messages.
+        Messages begin with `what`, where it stands, and have a sign between that and the value.
 
         Raises:
             OptionError: If the value is of another kind, or none that the option may have.
         """
         if self.is_switch:
-            if not isinstance(given, bool):
-                raise OptionError(f"{what}{sign}{given!r}: write true or false")
-            return self.switched if given else not self.switched
-        form = self.metavar
-        kind = "str" if self.is_repeatable else self.kind
-        entries = given if isinstance(given, list | tuple) and self.is_repeatable else [given]
-        values = [plain_value(kind, entry, what, sign, form) for entry in entries]
-        if self.choices is not None and values[0] not in self.choices:
-            raise OptionError(f"{what}{sign}{given!r}: choose from {', '.join(self.choices)}")
-        return values if self.is_repeatable else values[0]
+            if isinstance(given, bool):
+                return given == self.switched
+            raise OptionError(f"{what}{sign}{given!r}: write true or false")
+        if self.is_repeatable:
+            entries = given if isinstance(given, list | tuple) else [given]
+            return [self._single(entry, what, sign) for entry in entries]
+        return self._single(given, what, sign)
+
+    def _single(self, given: object, what: str, sign: str) -> object:
+        if isinstance(given, bool) or not isinstance(given, str | int | float | Fraction):
+            shown = " ".join(reprlib.repr(given).split())
+            form = f"write a number or a text in quotes, as {self.metavar}"
+            raise OptionError(f"{what}{sign}{shown}: {form}")
+        try:
+            result = read_value(self.kind, str(given))
+        except ArgumentTypeError as error:
+            raise OptionError(f"{what}: {error}") from error
+        choices = self.metadata.get("choices", (result,))
+        if result not in choices:
+            raise OptionError(f"{what}{sign}{given!r}: choose from {', '.join(choices)}")
+        return result
 
 
 def _range_option(name: str, help: str, metavar: str) -> Option:
@@ -163,12 +167,7 @@ def job_options() -> tuple[Option, ...]:
 def add_job_options(
     parser: argparse.ArgumentParser, wanted: Callable[[Option], bool] = lambda option: True
 ) -> None:
-    """Give a parser options of a job; what is not given does not appear in the result.
-
-    Args:
-        parser: Takes the options, in groups.
-        wanted: Which options; all, if left out.
-    """
+    """Give a parser options of a job, in groups; what is not given is absent from the result."""
     for key, title in HEADINGS.items():
         options = [option for option in job_options() if option.group == key and wanted(option)]
         if options:
@@ -179,11 +178,7 @@ def add_job_options(
 
 
 def commands_with(flag: str) -> list[str]:
-    """Commands that have an option of a job.
-
-    Args:
-        flag: Its name without dashes in front.
-    """
+    """Commands that have an option of a job, by its name without dashes in front."""
     found = [option for option in job_options() if option.flag == flag]
     return [name for name, has in COMMAND_OPTIONS.items() if any(map(has, found))]
 
@@ -193,25 +188,14 @@ def registry_help() -> str:
     lines = ["members and their parameters (NAME or NAME:KEY=VALUE,KEY=VALUE):"]
     for option in job_options():
         if option.registry is not None:
-            for name, cls in option.registry.own.items():
-                shown = (
-                    f"{p.name}={'FILE' if p.default is None else p.default}"
-                    for p in parameters(cls)
-                )
-                lines.append(
-                    f"  --{option.flag} " + ":".join(filter(None, [name, ",".join(shown)]))
-                )
+            own = option.registry.own.items()
+            lines += [f"  --{option.flag} {written(name, cls)}" for name, cls in own]
             lines += [f"  --{option.flag} {name} (installed)" for name in option.registry.added]
     return "\n".join(lines)
 
 
 def with_preset(given: Mapping[str, object], preset: Mapping[str, object]) -> dict[str, object]:
-    """Values of a preset, replaced by what the command line gives.
-
-    Args:
-        given: Values from the command line by field name.
-        preset: Values from the preset by field name.
-    """
+    """Values of a preset, replaced by what the command line gives; both by field name."""
     decided = any(name in given for name in EXCLUSIVE)
     kept = {k: v for k, v in preset.items() if not (decided and k in EXCLUSIVE)}
     return {**kept, **given}
@@ -222,28 +206,24 @@ def _add(group: argparse._ActionsContainer, option: Option) -> None:
     if not option.is_switch:
         more = {
             "action": "append" if option.is_repeatable else "store",
-            "type": reader_for("str" if option.is_repeatable else option.kind),
-            "choices": option.choices,
+            "type": partial(read_value, option.kind),
+            "choices": option.metadata.get("choices"),
             "metavar": option.metavar,
         }
-    text = option.help.replace("%", "%%")
-    group.add_argument(
-        f"--{option.flag}", dest=option.dest, default=argparse.SUPPRESS, help=text, **more
-    )
+    more |= {"default": argparse.SUPPRESS, "help": option.help.replace("%", "%%")}
+    group.add_argument(f"--{option.flag}", dest=option.dest, **more)
 
 
 def _options_of(cls: Any, group: str) -> Iterator[Option]:
     """Options of a dataclass and of the dataclasses inside it."""
     for field in fields(cls):
-        made: Any = field.default_factory
-        if "help" not in field.metadata:
-            if isinstance(made, type):
-                yield from _options_of(made, group)
-            continue
-        default, kind = field.default, kind_of(field)
-        if made is not MISSING:
+        made, default, kind = cast(Any, field.default_factory), field.default, kind_of(field)
+        if "registry" in field.metadata and made is not MISSING:
             default = field.metadata["registry"].name_of(made)
-        flag = str(field.metadata.get("flag", field.name.replace("_", "-")))
-        flag = f"no-{flag}" if kind == "bool" and default is True else flag
-        own = str(field.metadata.get("group", group))
-        yield Option(flag, field.name, own, kind, default, field.metadata)
+        if "help" in field.metadata:
+            flag = str(field.metadata.get("flag", field.name.replace("_", "-")))
+            flag = f"no-{flag}" if kind == "bool" and default is True else flag
+            own = field.metadata.get("group", group)
+            yield Option(flag, field.name, own, kind, default, field.metadata)
+        elif isinstance(made, type):
+            yield from _options_of(made, group)

@@ -5,7 +5,7 @@ from fractions import Fraction
 
 from stages.look.framing import Framing, framing_of
 from stages.masks.region import Region
-from warp_kernels.energy.color_model import CONSTANT, LINEAR, ColorModel
+from warp_kernels.color_model import CONSTANT, LINEAR, ColorModel
 from warp_kernels.errors import OptionError
 from warp_kernels.limits import MAX_SIDE
 from warp_kernels.styles import STYLES, Style

@@ -44,20 +44,16 @@ def output_in(output: str | Path, source: str | Path, ending: str | None = None)
 
 
 def is_still(source: Path) -> bool:
-    """Whether a source is a still, or the track of one; it is looked into.
+    """Whether a source is a still; it is looked into.
 
     Args:
         source: A file; what cannot be read is none.
     """
     if not source.is_file():
         return False
-    from pipeline.track import TrackReader, is_track
     from stages.media import probe
 
     try:
-        if is_track(source):
-            with TrackReader(source) as track:
-                return track.header.info.kind == "image"
         return probe(source).kind == "image"
     except TrimotionError:
         return False  # whoever opens it says what is wrong

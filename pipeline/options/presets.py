@@ -4,7 +4,7 @@ import tomllib
 from pathlib import Path
 
 from pipeline.options.command_line import job_options
-from pipeline.options.text_file import read_text
+from stages.media.text_file import read_text
 from warp_kernels.errors import OptionError
 
 SHIPPED = Path(__file__).parents[1] / "presets"
@@ -17,13 +17,7 @@ def shipped_presets() -> list[str]:
 
 
 def read_preset(name: str) -> dict[str, object]:
-    """Read a preset.
-
-    Args:
-        name: A TOML file, or the name of a shipped preset.
-
-    Returns:
-        Values by field name, as the command line would give them.
+    """Read a preset, a TOML file or the name of a shipped one: values by field name.
 
     Raises:
         OptionError: If it cannot be read, or holds anything that is not an option.

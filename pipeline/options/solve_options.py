@@ -15,7 +15,7 @@ from stages.layouts.importance import Importance
 from stages.media.frame_range import FrameRange
 from stages.media.reading.read_options import ReadOptions
 from stages.triangulate_options import TriangulateOptions
-from warp_kernels.energy.color_model import ColorModel
+from warp_kernels.color_model import ColorModel
 from warp_kernels.errors import OptionError
 
 

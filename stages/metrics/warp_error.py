@@ -4,7 +4,7 @@ import numpy as np
 
 from stages.metrics.motion import SourceMotion
 from stages.metrics.warp import warped
-from warp_kernels.energy.color_model import CHANNELS
+from warp_kernels.color_model import CHANNELS
 
 WHITE = 255.0
 """Code value of the colour 1."""

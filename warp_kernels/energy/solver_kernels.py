@@ -5,9 +5,9 @@ One that is missing here is compiled alone, when it is recorded.
 
 from typing import Any
 
+from warp_kernels.color_model import ColorModel
 from warp_kernels.device.device import Device
 from warp_kernels.energy.color_extremes import find_extremes
-from warp_kernels.energy.color_model import ColorModel
 from warp_kernels.energy.fit import fit_kernel
 from warp_kernels.energy.gradient_descent import descend
 from warp_kernels.energy.nearby_colors import nearby_kernel

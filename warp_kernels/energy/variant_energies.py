@@ -12,9 +12,9 @@ import warp as wp
 from warp_kernels.device.device import Device, Phase
 from warp_kernels.device.exact import EXACT
 from warp_kernels.energy.fit import fit_moments
-from warp_kernels.energy.variants import DIRECTIONS, TRIANGLE_VARIANTS, first_version
 from warp_kernels.moments.moment_layout import MomentLayout, moment_types
 from warp_kernels.moments.triangle_sides import side_sums
+from warp_kernels.moments.variants import DIRECTIONS, TRIANGLE_VARIANTS, first_version
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 

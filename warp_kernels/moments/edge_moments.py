@@ -13,10 +13,10 @@ import warp as wp
 
 from warp_kernels.device.device import Device, Phase
 from warp_kernels.device.exact import EXACT
-from warp_kernels.energy.variants import EDGE_VERSIONS, end_displacement
 from warp_kernels.moments.edge_walk import row_walker
 from warp_kernels.moments.line_moments import line_moments
 from warp_kernels.moments.moment_layout import MomentLayout, moment_types
+from warp_kernels.moments.variants import EDGE_VERSIONS, end_displacement
 from warp_kernels.raster import to_fixed, walk_edge
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})

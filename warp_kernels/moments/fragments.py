@@ -10,9 +10,9 @@ import warp as wp
 
 from warp_kernels.device.device import Device, Phase
 from warp_kernels.device.exact import EXACT
-from warp_kernels.energy.variants import TRIANGLE_VARIANTS, displacement
 from warp_kernels.moments.moment_layout import MomentLayout, moment_types
 from warp_kernels.moments.pixel_moments import area_sums_of_pixel, color_sums_of_pixel
+from warp_kernels.moments.variants import TRIANGLE_VARIANTS, displacement
 from warp_kernels.raster import first_row_below, to_fixed, winding
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})

@@ -12,7 +12,7 @@ from benchmarks.timing import layout_of, loaded_workspace, repeat, table, time_i
 from stages.topology import TOPOLOGIES
 from stages.topology.appraise import Appraiser
 from stages.topology.goal import SLIVER_HEIGHT, Goal
-from warp_kernels.energy.color_model import COLOR_MODELS
+from warp_kernels.color_model import COLOR_MODELS
 
 STEPS = (
     "load the picture",
