@@ -13,11 +13,11 @@ from warp_kernels.energy.gradient_descent import descend
 from warp_kernels.energy.nearby_colors import nearby_kernel
 from warp_kernels.energy.topology_gains import CHANGES
 from warp_kernels.energy.variant_energies import energy_kernel
-from warp_kernels.energy.variants import EDGE_VERSIONS
 from warp_kernels.moments.edge_moments import edge_kernel
 from warp_kernels.moments.fragments import fragment_kernel
 from warp_kernels.moments.moment_layout import layout_of_moments
 from warp_kernels.moments.prefix_tables import table_kernel
+from warp_kernels.moments.variants import EDGE_VERSIONS
 
 SLOWEST = ("split", "flip", "collapse")
 """Changes of topology, those first whose kernels take longest to compile."""
