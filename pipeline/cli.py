@@ -65,8 +65,8 @@ def main(argv: Sequence[str] | None = None, commands: "Mapping[str, Command] | N
 def _say_at_once(arguments: argparse.Namespace) -> None:
     """On a first run, say that kernels will be compiled, before what takes a second to import."""
     from pipeline.commands.convert import progress_for
+    from pipeline.commands.early_start import start_early
     from warp_kernels.device.cache_place import is_first_run
-    from warp_kernels.device.early_start import start_early
 
     if arguments.command in COMPILING and is_first_run():
         with progress_for(arguments) as progress:
