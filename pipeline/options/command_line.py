@@ -125,14 +125,13 @@ class Option:
         return result
 
 
-def _range_option(name: str, help: str, metavar: str) -> Option:
-    return Option(name, name, "range", "str", None, {"help": help, "metavar": metavar})
-
-
-RANGE_OPTIONS = (
-    _range_option("frames", "frames from 0, both ends included: A-B, A, A- or A-BxS", "A-B"),
-    _range_option("start", "from this time on: seconds or h:mm:ss", "TIME"),
-    _range_option("end", "up to this time, itself included", "TIME"),
+RANGE_OPTIONS = tuple(
+    Option(name, name, "range", "str", None, {"help": text, "metavar": form})
+    for name, text, form in (
+        ("frames", "frames from 0, both ends included: A-B, A, A- or A-BxS", "A-B"),
+        ("start", "from this time on: seconds or h:mm:ss", "TIME"),
+        ("end", "up to this time, itself included", "TIME"),
+    )
 )
 """Options that together make a `FrameRange`."""
 
@@ -140,17 +139,15 @@ _SOURCE_ONLY = ("track", "resume", "fps", "page", "stream")
 """Options that mean nothing once there is a track."""
 
 COMMAND_OPTIONS: dict[str, Callable[[Option], bool]] = {
-    "animate": lambda option: True,
-    "solve": lambda option: (
-        option.group not in ("look", "output") or option.dest in ("overwrite", "resume")
+    "animate": lambda o: True,
+    "solve": lambda o: o.group not in ("look", "output") or o.dest in ("overwrite", "resume"),
+    "render": lambda o: (
+        (o.group in ("range", "look", "output") and o.dest not in _SOURCE_ONLY)
+        or o.dest in ("device", "threads")
     ),
-    "render": lambda option: (
-        (option.group in ("range", "look", "output") and option.dest not in _SOURCE_ONLY)
-        or option.dest in ("device", "threads")
-    ),
-    "preview": lambda option: option.dest not in ("track", "resume", "jobs"),
-    "plan": lambda option: option.group == "range" or option.dest == "cuts",
-    "measure": lambda option: option in RANGE_OPTIONS,
+    "preview": lambda o: o.dest not in ("track", "resume", "jobs"),
+    "plan": lambda o: o.group == "range" or o.dest == "cuts",
+    "measure": lambda o: o in RANGE_OPTIONS,
 }
 """Which options a command has."""
 
