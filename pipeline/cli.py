@@ -51,6 +51,8 @@ def main(argv: Sequence[str] | None = None, commands: "Mapping[str, Command] | N
         return request.code if isinstance(request.code, int) else 2
     try:
         with _terminable(), _piped(arguments):
+            if commands is None:
+                _say_at_once(arguments)
             code = (commands or COMMANDS)[arguments.command](arguments)
             sys.stdout.flush()
     except BaseException as error:  # one place where every failure becomes a line and a code
@@ -58,6 +60,18 @@ def main(argv: Sequence[str] | None = None, commands: "Mapping[str, Command] | N
             traceback.print_exc()
         return _report(error, arguments)
     return code or 0
+
+
+def _say_at_once(arguments: argparse.Namespace) -> None:
+    """On a first run, say that kernels will be compiled, before what takes a second to import."""
+    from pipeline.commands.convert import progress_for
+    from pipeline.commands.early_start import start_early
+    from warp_kernels.device.cache_place import is_first_run
+
+    if arguments.command in COMPILING and is_first_run():
+        with progress_for(arguments) as progress:
+            progress.kernels(0, None)
+        start_early(arguments.command, getattr(arguments, "device", "auto"))
 
 
 def _piped(arguments: argparse.Namespace) -> AbstractContextManager[None]:
@@ -207,6 +221,9 @@ COMMANDS: dict[str, Command] = {
     "help": run_help,
 }
 """What each subcommand runs."""
+
+COMPILING = ("animate", "solve", "render")
+"""Those that always launch kernels."""
 
 
 def _report(error: BaseException, arguments: argparse.Namespace) -> int:

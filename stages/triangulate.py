@@ -25,6 +25,7 @@ from stages.topology.goal import SLIVER_HEIGHT, Goal
 from stages.triangulate_options import TriangulateOptions
 from warp_kernels.color_model import CHANNELS, ColorModel
 from warp_kernels.device.device import Device
+from warp_kernels.energy.solver_kernels import limiting_kernels, solving_kernels
 from warp_kernels.energy.workspace import Workspace
 
 SPRING = 39.0
@@ -77,21 +78,20 @@ class Triangulator:
         self.options = _against(options, self._space.scale)
         self._device, self._size = device, size
         self._least = options.refine.least_count(*size)
+        fitted = max(options.model, drawn or options.model, key=lambda model: model.degree)
+        device.expect(limiting_kernels(device, options.model, fitted))
         self._even = self._bench(weighted=False)
         self._weighted: Bench | None = None
         self._use(self._even)
         self._solved: Snapshot | None = None  # with energies by the colours that are optimised
-        self._fitting = self._workspace
-        fitted = options.model
-        if drawn is not None and drawn.degree > fitted.degree:
-            fitted = drawn
-        if fitted is not options.model or options.space != "rgb":
-            self._fitting = Workspace(device, size, fitted)
+        shared = fitted is options.model and options.space == "rgb"
+        self._fitting = self._workspace if shared else Workspace(device, size, fitted)
         self._limiter = Limiter(self._fitting)
 
     def _bench(self, *, weighted: bool) -> Bench:
         """Make what pictures with weights, or those without, are worked on with."""
         options = self.options
+        self._device.expect(solving_kernels(self._device, options.model, options.sums, weighted))
         workspace = Workspace(self._device, self._size, options.model, options.sums, weighted)
         appraiser = Appraiser(workspace, SLIVER_HEIGHT)
         approximator = Approximator(

@@ -6,6 +6,7 @@ import os
 import subprocess
 import sys
 from contextlib import redirect_stderr
+from itertools import pairwise
 from pathlib import Path
 
 import media_samples as samples
@@ -124,6 +125,74 @@ def test_summary_of_nothing_divides_by_nothing() -> None:
     """A job of no time has no frame rate."""
     assert Summary(1, 0.0, 0.0, Path("a.png")).fps == 0.0
     assert str(Summary(1, 1.0, 0.0, Path("a.png"))).startswith("1 frame in")
+
+
+def test_every_member_tells_of_kernels_as_it_tells_of_frames(
+    monkeypatch: pytest.MonkeyPatch, capsys
+) -> None:
+    """At once that there are some, then how far it is; nothing with `none`."""
+    for name in ("plain", "json", "none"):
+        progress = open_progress(name)
+        progress.kernels(0, None)
+        for done in range(4):
+            progress.kernels(done, 3)
+    told = capsys.readouterr()
+    plain = told.err.splitlines()
+    assert plain[0].startswith("first run: ")
+    assert plain[1:] == ["compiling kernels 0/3", "compiling kernels 3/3"]
+    events = [json.loads(line) for line in told.out.splitlines()]
+    assert [(e["done"], e["total"]) for e in events] == [(0, None), (0, 3), (1, 3), (2, 3), (3, 3)]
+    monkeypatch.setattr(sys, "stderr", Terminal())
+    bar = open_progress("bar")
+    bar.kernels(0, 3)
+    bar.kernels(2, 3)
+    bar.frame(1, 9, 700, 20.0)
+    bar.close()
+    assert "2/3" in sys.stderr.getvalue()
+    assert "1/9" in sys.stderr.getvalue()
+
+
+@pytest.mark.parametrize(
+    ("columns", "kind", "expected"),
+    [
+        (80, "xterm", "bar"),
+        (40, "xterm", "bar"),
+        (0, "xterm", "plain"),
+        (10, "xterm", "plain"),
+        (80, "dumb", "plain"),
+    ],
+)
+def test_a_bar_needs_room(columns: int, kind: str, expected: str) -> None:
+    """A terminal of no known size, a very narrow one and one that cannot go back get lines."""
+    pty, termios = pytest.importorskip("pty"), pytest.importorskip("termios")
+    ours, theirs = pty.openpty()
+    termios.tcsetwinsize(theirs, (24 if columns else 0, columns))
+    script = "from pipeline.progress import open_progress; print(type(open_progress('auto')))"
+    with open(theirs, "wb", buffering=0) as terminal:
+        done = subprocess.run(
+            [sys.executable, "-c", script],
+            stdout=subprocess.PIPE,
+            stderr=terminal,
+            text=True,
+            cwd=ROOT,
+            env={**os.environ, "TERM": kind},
+        )
+    os.close(ours)
+    assert PROGRESS[expected].__name__ in done.stdout
+
+
+def test_plain_lines_of_a_long_job_are_bounded(monkeypatch: pytest.MonkeyPatch, capsys) -> None:
+    """An hour is told in some hundred lines, and no minute goes by without one."""
+    now = [1000.0]
+    monkeypatch.setattr("time.perf_counter", lambda: now[0])
+    progress, told = open_progress("plain"), []
+    for done in range(1, 36001):
+        now[0] += 0.1
+        progress.frame(done, 36000, 700, 20.0)
+        if capsys.readouterr().err:
+            told.append(now[0])
+    assert len(told) < 150
+    assert max(after - before for before, after in pairwise(told)) < 61
 
 
 @pytest.mark.parametrize("how", ["json", "plain"])

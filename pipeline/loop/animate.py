@@ -188,6 +188,10 @@ class _Halves(Progress):
         """The first pass is over."""
         self._is_second = True
 
+    def kernels(self, done: int, total: int | None) -> None:
+        """Tell how far compiling is."""
+        self._whole.kernels(done, total)
+
     def frame(self, done: int, total: int | None, triangles: int, rmse: float) -> None:
         """Tell of a frame whenever two halves are finished."""
         together = done if total is None or not self._is_second else done + total

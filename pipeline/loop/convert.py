@@ -56,13 +56,14 @@ def convert(job: Job, fitted: ColorModel, progress: Progress) -> Animated:
         check_cuts(options.cuts, options.source, info)
         if draws:
             check_drawing(job, info)
-        device = Device(job.run.device, job.run.threads)
+        device = Device(job.run.device, job.run.threads, progress.kernels)
         count = options.triangulate.refine.triangles
         attention = Attention(options.foci, info, options.frame_range.step, count)
         size = (info.width, info.height)
         maps = [WeightMap(str(m.file), size, options.frame_range, m.strength) for m in options.maps]
-        triangulator = triangulator_of(options, size, device, fitted)
+        # in this order all kernels of the job are compiled together
         drawing = Drawing(job, info, device) if draws else None
+        triangulator = triangulator_of(options, size, device, fitted)
         tally = Tally(progress, expected_frames(options.frame_range, info))
         restarts: list[str] = []
         found = _opened(decoder, attention, maps, options, past, restarts)

@@ -115,6 +115,8 @@ class _Crew:
                 continue
             if kind == "frame":
                 progress.frame(*values)
+            elif kind == "kernels":
+                progress.kernels(*values)
             elif kind == "error":
                 raise PartError(*values)
             else:
@@ -144,6 +146,10 @@ class _Reporter(Progress):
         """Tell that a frame is finished."""
         _watch(self._parent)
         self._reports.put(("frame", done, total, triangles, rmse))
+
+    def kernels(self, done: int, total: int | None) -> None:
+        """Tell how far compiling is."""
+        self._reports.put(("kernels", done, total))
 
 
 def _watch(parent: int) -> None:

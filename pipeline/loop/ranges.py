@@ -113,6 +113,10 @@ class Together(Progress):
         self._total = sum((r.last or 0) - r.first + r.step for r in ranges) // ranges[0].step
         self._done = sum(map(_held, parts))
 
+    def kernels(self, done: int, total: int | None) -> None:
+        """Tell how far compiling is."""
+        self._whole.kernels(done, total)
+
     def frame(self, done: int, total: int | None, triangles: int, rmse: float) -> None:
         """Tell of one more frame, whichever it is of its range."""
         self._done += 1

@@ -39,7 +39,7 @@ def render(job: Job, track: TrackReader, info: MediaInfo, progress: Progress) ->
     begun = perf_counter()
     check_drawing(job, info)
     options, look = job.solve, job.look
-    device = Device(job.run.device, job.run.threads)
+    device = Device(job.run.device, job.run.threads, progress.kernels)
     shown = track.rows_in(options.frame_range)
     rows = rows_around(track.rows, shown, options, look)
     tally = Tally(progress, len(shown))

@@ -19,7 +19,8 @@ wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 
 
 @cache
-def _fragment_kernel(layout: MomentLayout) -> Any:
+def fragment_kernel(layout: MomentLayout) -> Any:
+    """The kernel that adds up the fragments of one variant of a triangle."""
     types = moment_types(layout)
     color_type, area_type, integer = types.color, types.area, types.integer
     color_sums = color_sums_of_pixel(layout)
@@ -118,5 +119,5 @@ def record_fragment_moments(
     Deviation: the error follows from the moments, without a second pass over the fragments.
     """
     inputs = [vertices, triangles, probe, pixels, weights]
-    kernel = _fragment_kernel(layout)
+    kernel = fragment_kernel(layout)
     return device.record(kernel, inputs, [color_out, area_out], per_element=TRIANGLE_VARIANTS)

@@ -125,6 +125,11 @@ def _wide_table_kernel(layout: MomentLayout) -> Any:
     return sum_row
 
 
+def table_kernel(layout: MomentLayout) -> Any:
+    """The kernel that fills a row of the prefix table."""
+    return _wide_table_kernel(layout) if layout.wide else _narrow_table_kernel(layout)
+
+
 def record_image_tables(
     device: Device,
     layout: MomentLayout,
@@ -146,7 +151,6 @@ def record_image_tables(
     Deviation: prefix sums along rows take the place of sums over fragments; the paper has no
         weights.
     """
-    kernel = _wide_table_kernel(layout) if layout.wide else _narrow_table_kernel(layout)
-    phase = device.record(kernel, [pixels, weights], [table_out])
+    phase = device.record(table_kernel(layout), [pixels, weights], [table_out])
     phase.resize(pixels.shape[0])
     return phase
