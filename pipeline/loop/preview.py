@@ -94,8 +94,8 @@ def preview(job: Job, progress: Progress) -> Preview:
             before = TIMED if number % 2 or len(places) == 1 else SHORT
             part = FrameRange(frames[max(0, place - before)], frames[place], frames.step)
             path = Path(folder) / f"{number}{ENDINGS.get(job.output.encode.codec or '', '.mp4')}"
-            told = timing.run(replace(job, solve=replace(job.solve, frame_range=part)), path)
-            notes.extend(told)
+            alone = replace(job, solve=replace(job.solve, frame_range=part))
+            notes.extend(timing.run(alone, path, progress))
             frame = frames[place]
             time = None if info.average_rate is None else frame / info.average_rate
             moments.append(Moment(frame, time, _last_picture(path)))
@@ -120,19 +120,20 @@ class _Timing:
         """How long every later frame takes [s]; 0 if there is none."""
         return later_seconds(self._runs)
 
-    def run(self, job: Job, path: Path) -> Sequence[str]:
+    def run(self, job: Job, path: Path, progress: Progress) -> Sequence[str]:
         """Run a part into a file of its own.
 
         Args:
             job: The part.
             path: The file.
+            progress: Told of kernels that are compiled.
 
         Returns:
             Choices that were made, one sentence each.
         """
         encode = replace(job.output.encode, audio=False, overwrite=True)
         alone = replace(job, output=Output(path, encode), run=replace(job.run, jobs=1))
-        clock = _Clock()
+        clock = _Clock(progress)
         result = animate(alone, clock)
         self._runs.append((np.array(clock.times), perf_counter()))
         return result.notes
@@ -163,10 +164,15 @@ def later_seconds(runs: Sequence[tuple[np.ndarray, float]]) -> float:
 class _Clock(Progress):
     """Remembers when frames were finished."""
 
-    def __init__(self) -> None:
+    def __init__(self, whole: Progress) -> None:
         super().__init__()
+        self._whole = whole
         self.times = [perf_counter()]
         """The beginning, then the end of every frame [s]."""
+
+    def kernels(self, done: int, total: int | None) -> None:
+        """Tell of kernels as always."""
+        self._whole.kernels(done, total)
 
     def frame(self, done: int, total: int | None, triangles: int, rmse: float) -> None:
         """Look at the clock."""
