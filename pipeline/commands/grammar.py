@@ -69,6 +69,10 @@ class OneLineParser(argparse.ArgumentParser):
             self.error(_unknown(unknown, list(self._option_string_actions), command))
         return found, unknown
 
+    def options(self) -> list[argparse.Action]:
+        """Its options and arguments, for which argparse has no public name."""
+        return list(self._actions)
+
     def commands(self) -> dict[str, argparse.ArgumentParser]:
         """The parsers of its commands, by name."""
         for action in self._actions:
