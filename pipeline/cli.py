@@ -97,6 +97,17 @@ def run_conversion(arguments: argparse.Namespace) -> int:
     return convert_all(arguments, _report)
 
 
+def run_preview(arguments: argparse.Namespace) -> None:
+    """Draw a few moments.
+
+    Args:
+        arguments: What the user gave; options that were left out are absent.
+    """
+    from pipeline.commands.convert import preview_of
+
+    print(preview_of(arguments))
+
+
 def run_plan(arguments: argparse.Namespace) -> None:
     """Print ranges of whole shots.
 
@@ -212,6 +223,7 @@ COMMANDS: dict[str, Command] = {
     "animate": run_conversion,
     "solve": run_conversion,
     "render": run_conversion,
+    "preview": run_preview,
     "plan": run_plan,
     "join": run_join,
     "info": run_info,

@@ -59,6 +59,29 @@ def _render(arguments: argparse.Namespace) -> "Animated":
         return _tell(progress, result, made.job.output.path)
 
 
+def preview_of(arguments: argparse.Namespace) -> str:
+    """Draw a few moments of what `animate` would make.
+
+    Args:
+        arguments: What the user gave.
+
+    Returns:
+        What is told of it.
+    """
+    name = arguments.output or f"{Path(arguments.source).stem}.preview.png"
+    job = _job(arguments, output=name)
+    from pipeline.commands.pipes import shown_name
+    from pipeline.commands.preview_sheet import as_json, make_preview, told
+
+    assert job.output.path is not None
+    with progress_for(arguments) as progress:
+        found = make_preview(job, progress)
+        for note in found.notes:
+            progress.note(note)
+    tell = as_json if arguments.json else told
+    return tell(found, shown_name(job.output.path))
+
+
 def _job(arguments: argparse.Namespace, **fixed: object) -> "Job":
     """The job that the arguments and their preset describe.
 
