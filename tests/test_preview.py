@@ -32,6 +32,7 @@ def test_five_moments_and_a_time(clip: Path, tmp_path: Path, monkeypatch, capsys
     assert figures["moments"] == [2, 6, 10, 14, 18]
     assert figures["frames"] == 10
     assert figures["output"] == "in.preview.png"
+    assert main(["preview", str(clip), "-o", str(tmp_path), *QUICK, "--overwrite"]) == 0
     sheet = cv2.imread("in.preview.png")
     assert sheet.shape == (GAP + WIDTH * 3 // 4 + CAPTION + GAP, GAP + 5 * (WIDTH + GAP), 3)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["in.mp4", "in.preview.png"]

@@ -1,6 +1,7 @@
 """One run of `animate`, `solve` or `render`, and what is told of it."""
 
 import argparse
+import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -68,8 +69,10 @@ def preview_of(arguments: argparse.Namespace) -> str:
     Returns:
         What is told of it.
     """
-    name = arguments.output or f"{Path(arguments.source).stem}.preview.png"
-    job = _job(arguments, output=name)
+    place = arguments.output or ""
+    if not place or place.endswith(("/", os.sep)) or os.path.isdir(place):
+        place = os.path.join(place, f"{Path(arguments.source).stem}.preview.png")
+    job = _job(arguments, output=place)
     from pipeline.commands.pipes import shown_name
     from pipeline.commands.preview_sheet import as_json, make_preview, told
 
