@@ -20,7 +20,8 @@ from typing import Any
 from timing import machine, program, table
 
 import pipeline.loop.animate
-from pipeline.job import Job
+import pipeline.loop.convert
+from pipeline.options.job import Job
 from pipeline.options.output import Output
 from pipeline.options.run import Run
 from pipeline.options.solve_options import SolveOptions
@@ -30,14 +31,15 @@ from stages.media import EncodeOptions, FrameRange
 from stages.media.reading.decode import Decoder
 from stages.media.writing.encode import Encoder
 from stages.render import Renderer
-from stages.topology.refine import RefineOptions
-from stages.triangulate import TriangulateOptions, Triangulator
+from stages.topology.refine_options import RefineOptions
+from stages.triangulate import Triangulator
+from stages.triangulate_options import TriangulateOptions
 
 DEFAULT_CLIP = Path(__file__).parents[1] / "sample_videos" / "bigbuckbunny.mp4"
 WATCHED: tuple[tuple[str, type | ModuleType, str], ...] = (
     ("decode", Decoder, "__next__"),
     ("flow", Dis, "estimate"),
-    ("advect", pipeline.loop.animate, "advect"),
+    ("advect", pipeline.loop.convert, "advect"),
     ("triangulate, first", Triangulator, "first"),
     ("triangulate, next", Triangulator, "next"),
     ("render", Renderer, "render"),

@@ -32,15 +32,16 @@ from stages.flows.passage import Passage
 from stages.flows.view import View
 from stages.frame import Frame
 from stages.layouts.importance import Importance
-from stages.metrics import Motion
+from stages.metrics import SourceMotion
 from stages.metrics.warp import warped
 from stages.motion.advect import advect
 from stages.render import Renderer
 from stages.snapshot import Snapshot
-from stages.topology.refine import RefineOptions
-from stages.triangulate import TriangulateOptions, Triangulator
+from stages.topology.refine_options import RefineOptions
+from stages.triangulate import Triangulator
+from stages.triangulate_options import TriangulateOptions
 from warp_kernels.device.device import Device
-from warp_kernels.styles import Flat
+from warp_kernels.styles.flat import Flat
 
 WIDTH, HEIGHT = 320, 360
 """Size of a half [px]."""
@@ -246,7 +247,9 @@ def error(pixels: list[np.ndarray], pictures: list[np.ndarray], where: np.ndarra
     )
 
 
-def restlessness(motions: list[Motion], pictures: list[np.ndarray], where: np.ndarray) -> float:
+def restlessness(
+    motions: list[SourceMotion], pictures: list[np.ndarray], where: np.ndarray
+) -> float:
     """E_warp of a part of the picture, mean over the settled frames [1e-3]."""
     found = []
     for number in range(SETTLED, len(motions)):
@@ -268,7 +271,7 @@ def row(kind: str, pans: bool, options: argparse.Namespace) -> tuple[str, ...]:
     pixels = clip(kind, options.frames, pans=pans)
     solver = Solver((2 * WIDTH, HEIGHT), options.triangles)
     ways = {"independent": solver.independent(pixels), "followed": solver.followed(pixels)}
-    motions = [Motion.between(a, b) for a, b in pairwise(pixels)]
+    motions = [SourceMotion.between(a, b) for a, b in pairwise(pixels)]
     if options.keep is not None:
         folder = options.keep / f"{kind}_{'pan' if pans else 'still'}"
         _keep(folder, "source", pixels)

@@ -24,16 +24,16 @@ from timing import program, table
 
 from pipeline.compare.measure import measure
 from pipeline.compare.report import FrameFigures, Report
-from pipeline.job import Job
 from pipeline.loop.animate import animate
-from pipeline.options.flags import size
+from pipeline.options.job import Job
 from pipeline.options.output import Output
 from pipeline.options.solve_options import SolveOptions
+from pipeline.options.values import size
 from pipeline.progress import Progress
 from stages.flows.none import NoFlow
 from stages.media import FrameRange, open_decoder
-from stages.topology.refine import RefineOptions
-from stages.triangulate import TriangulateOptions
+from stages.topology.refine_options import RefineOptions
+from stages.triangulate_options import TriangulateOptions
 
 ROOT = Path(__file__).parents[1]
 RESULTS = ROOT / "docs" / "results"

@@ -19,12 +19,20 @@ def pages() -> list[Path]:
     return [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 
 
+def shown_by(page: Path) -> list[str]:
+    """Give the commands that a page shows, one a line, without comments."""
+    return _lines(re.findall(r"```sh\n(.*?)```", page.read_text("utf-8"), flags=re.DOTALL))
+
+
 def commands_of(page: Path) -> list[str]:
-    """Give the commands that a page shows or runs besides, one a line, without comments."""
-    text = page.read_text(encoding="utf-8")
-    shown = re.findall(r"```sh\n(.*?)```", text, flags=re.DOTALL)
+    """Give the commands that a page shows, and those that it runs besides."""
+    text = page.read_text("utf-8")
     hidden = re.findall(r"<!-- also run:\n(.*?)-->", text, flags=re.DOTALL)
-    lines = "\n".join([*shown, *hidden]).replace("\\\n", " ").splitlines()
+    return [*shown_by(page), *_lines(hidden)]
+
+
+def _lines(blocks: list[str]) -> list[str]:
+    lines = "\n".join(blocks).replace("\\\n", " ").splitlines()
     # Comments, redirections and pipes are the shell's.
     return [line for line in (re.split(r"\s[#>|]\s", line)[0].strip() for line in lines) if line]
 

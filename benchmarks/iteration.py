@@ -21,8 +21,8 @@ from timing import (
     time_iteration,
 )
 
+from warp_kernels.color_model import COLOR_MODELS
 from warp_kernels.device.device import Device
-from warp_kernels.energy.color_model import COLOR_MODELS
 
 HEADS = (
     "colours",

@@ -23,12 +23,12 @@ from timing import (
     table,
 )
 
-from pipeline.options.flags import size
 from pipeline.options.members import parse_member
+from pipeline.options.values import size
 from stages.render import Renderer
 from stages.snapshot import Snapshot
+from warp_kernels.color_model import LINEAR
 from warp_kernels.device.device import Device
-from warp_kernels.energy.color_model import LINEAR
 from warp_kernels.styles import STYLES
 
 STACKS = (("flat",), ("flat", "edges"), ("gradient",), ("hatching",), ("texture",), ("lenses",))

@@ -25,8 +25,8 @@ from timing import (
 )
 
 from stages.mesh import Mesh
+from warp_kernels.color_model import COLOR_MODELS
 from warp_kernels.device.device import Device
-from warp_kernels.energy.color_model import COLOR_MODELS
 
 RESULTS = Path(__file__).parents[1] / "docs" / "results"
 SIZES = ((128, 128), (256, 256), (512, 512), (1280, 720), (1920, 1080), (3840, 2160))

@@ -18,10 +18,11 @@ from timing import DEFAULT_PICTURE, machine, program, read_picture, table
 from stages.frame import Frame
 from stages.layouts import LAYOUTS
 from stages.topology import TOPOLOGIES
-from stages.topology.refine import RefineOptions
-from stages.triangulate import TriangulateOptions, Triangulator
+from stages.topology.refine_options import RefineOptions
+from stages.triangulate import Triangulator
+from stages.triangulate_options import TriangulateOptions
+from warp_kernels.color_model import COLOR_MODELS
 from warp_kernels.device.device import Device
-from warp_kernels.energy.color_model import COLOR_MODELS
 
 HEADS = ("picture", "wanted", "triangles", "rmse", "seconds")
 

@@ -15,8 +15,8 @@ import numpy as np
 from stages.layouts.importance import Importance
 from stages.mesh import Mesh
 from stages.optimize import load_mesh
+from warp_kernels.color_model import ColorModel
 from warp_kernels.device.device import Device
-from warp_kernels.energy.color_model import ColorModel
 from warp_kernels.energy.workspace import Workspace
 
 DEFAULT_PICTURE = Path(__file__).parents[1] / "sample_videos" / "astronaut.jpg"

@@ -10,18 +10,14 @@ import signal
 import sys
 import threading
 import traceback
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import Any, NoReturn
 
 from pipeline.commands.crash_watch import watch_for_crashes
 from pipeline.commands.grammar import build_parser
-
-if TYPE_CHECKING:
-    from pipeline.job import Job
-    from pipeline.loop.animate import Animated
-    from pipeline.progress import Progress
+from pipeline.commands.inputs import joined, take
 
 INTERRUPTED = 130
 TERMINATED = 143
@@ -31,11 +27,12 @@ class Terminated(BaseException):
     """SIGTERM, raised in the main thread so that what is open cleans up after itself."""
 
 
-def main(argv: Sequence[str] | None = None) -> int:
+def main(argv: Sequence[str] | None = None, commands: "Mapping[str, Command] | None" = None) -> int:
     """Run the command line.
 
     Args:
         argv: Arguments without the program's name; None for those of the process.
+        commands: What each command runs; `COMMANDS` if left out.
 
     Returns:
         0 done, 1 failed, 2 usage, 3 input unreadable, 4 output cannot be written, 130 or 143
@@ -49,22 +46,38 @@ def main(argv: Sequence[str] | None = None) -> int:
         parser.print_help(sys.stderr)  # a script whose variable was empty must notice
         return 2
     try:
-        arguments = parser.parse_args(argv)
+        arguments = parser.parse_args(joined(sys.argv[1:] if argv is None else argv))
     except SystemExit as request:
         return request.code if isinstance(request.code, int) else 2
     try:
         with _terminable(), _piped(arguments):
-            COMMANDS[arguments.command](arguments)
+            if commands is None:
+                _say_at_once(arguments)
+            code = (commands or COMMANDS)[arguments.command](arguments)
             sys.stdout.flush()
     except BaseException as error:  # one place where every failure becomes a line and a code
         if arguments.debug:
             traceback.print_exc()
         return _report(error, arguments)
-    return 0
+    return code or 0
+
+
+def _say_at_once(arguments: argparse.Namespace) -> None:
+    """On a first run, say that kernels will be compiled, before what takes a second to import."""
+    from pipeline.commands.convert import progress_for
+    from warp_kernels.device.cache_place import is_first_run
+    from warp_kernels.device.early_start import start_early
+
+    if arguments.command in COMPILING and is_first_run():
+        with progress_for(arguments) as progress:
+            progress.kernels(0, None)
+        start_early(arguments.command, getattr(arguments, "device", "auto"))
 
 
 def _piped(arguments: argparse.Namespace) -> AbstractContextManager[None]:
     """Files in place of `-`, if a name is one."""
+    if "inputs" in arguments:
+        take(arguments, arguments.inputs[0])
     names = (getattr(arguments, key, None) or "" for key in ("source", "file", "output"))
     if not any(name.startswith("-") for name in names):
         return nullcontext()
@@ -73,67 +86,15 @@ def _piped(arguments: argparse.Namespace) -> AbstractContextManager[None]:
     return piped(arguments)
 
 
-def run_animate(arguments: argparse.Namespace) -> None:
-    """Convert a source.
+def run_conversion(arguments: argparse.Namespace) -> int:
+    """Convert a source, or several; `solve` and `render` are done alike.
 
     Args:
         arguments: What the user gave; options that were left out are absent.
     """
-    job = _job(arguments)
-    with _progress(arguments) as progress:
-        if job.run.jobs > 1 or job.look.followed:
-            from pipeline.loop.processes import animate_in_parts
+    from pipeline.commands.several import convert_all
 
-            _tell(progress, animate_in_parts(job, progress), job.output.path)
-        else:
-            from pipeline.loop.animate import animate
-
-            _tell(progress, animate(job, progress), job.output.path)
-
-
-def run_solve(arguments: argparse.Namespace) -> None:
-    """Convert a source to a mesh track.
-
-    Args:
-        arguments: What the user gave; options that were left out are absent.
-    """
-    # Looks, which a preset may hold, do not belong to a track.
-    job = _job(arguments, track=arguments.output, output=None, styles=(), regions=())
-    parts = job.solve, job.output, job.run
-    with _progress(arguments) as progress:
-        if job.run.jobs > 1:
-            from pipeline.loop.processes import solve_in_parts
-
-            _tell(progress, solve_in_parts(*parts, progress), job.output.track)
-        else:
-            from pipeline.loop.animate import solve
-
-            _tell(progress, solve(*parts, progress), job.output.track)
-
-
-def run_render(arguments: argparse.Namespace) -> None:
-    """Draw a mesh track.
-
-    Args:
-        arguments: What the user gave; options that were left out are absent.
-    """
-    from pipeline.options.build import build_render
-
-    path = Path(arguments.track)
-    source = None if arguments.source is None else Path(arguments.source)
-    wanted = build_render(_given(arguments), path)
-    from pipeline.look.render_job import render_job
-    from pipeline.loop.animate import render
-    from pipeline.track import TrackReader
-
-    with TrackReader(path) as track, _progress(arguments) as progress:
-        made = render_job(track, *wanted, source)
-        for note in made.notes:
-            progress.note(note)
-        for warning in made.warnings:
-            progress.warn(warning)
-        result = render(made.job, track, made.info, progress)
-        _tell(progress, result, made.job.output.path)
+    return convert_all(arguments, _report)
 
 
 def run_plan(arguments: argparse.Namespace) -> None:
@@ -143,9 +104,10 @@ def run_plan(arguments: argparse.Namespace) -> None:
         arguments: What the user gave; options that were left out are absent.
     """
     from pipeline.loop.plan import plan
-    from pipeline.options.build import build_solve
+    from pipeline.options.build import fill, values_of
+    from pipeline.options.solve_options import SolveOptions
 
-    found = plan(build_solve(vars(arguments)), arguments.parts)
+    found = plan(fill(SolveOptions, values_of(vars(arguments))), arguments.parts)
     print(found.as_json() if arguments.json else found.as_lines())
 
 
@@ -181,12 +143,13 @@ def run_measure(arguments: argparse.Namespace) -> None:
     Args:
         arguments: What the user gave.
     """
+    from pipeline.commands.convert import progress_for
     from pipeline.compare.measure import measure
     from pipeline.options.build import frame_range
 
     track = None if arguments.track is None else Path(arguments.track)
     wanted = frame_range(vars(arguments))
-    with _progress(arguments) as progress:
+    with progress_for(arguments) as progress:
         report = measure(Path(arguments.source), Path(arguments.output), wanted, track, progress)
     print(report.as_json() if arguments.json else report.as_table())
 
@@ -206,6 +169,21 @@ def run_styles(arguments: argparse.Namespace) -> None:
 
     triangles, overwrite = arguments.triangles, arguments.overwrite
     draw_sheet(arguments.picture, arguments.sheet, triangles=triangles, overwrite=overwrite)
+
+
+def run_completion(arguments: argparse.Namespace) -> None:
+    """Print the script by which a shell completes the command line.
+
+    Args:
+        arguments: What the user gave.
+    """
+    from pipeline.commands.completion import SHELLS
+    from pipeline.commands.completion.words import words_of
+    from warp_kernels.styles import STYLES
+
+    known = build_parser().commands()
+    listed = {"help": tuple(known), "styles": tuple(STYLES)}
+    print(SHELLS[arguments.shell](words_of(known, listed)), end="")
 
 
 def run_help(arguments: argparse.Namespace) -> None:
@@ -228,62 +206,24 @@ def run_help(arguments: argparse.Namespace) -> None:
         raise OptionError(f"help {arguments.topic}: no such command; {similar}")
 
 
-COMMANDS: dict[str, Callable[[argparse.Namespace], None]] = {
-    "animate": run_animate,
-    "solve": run_solve,
-    "render": run_render,
+Command = Callable[[argparse.Namespace], int | None]
+"""A command is given what the user gave; it gives its exit code, None for 0."""
+COMMANDS: dict[str, Command] = {
+    "animate": run_conversion,
+    "solve": run_conversion,
+    "render": run_conversion,
     "plan": run_plan,
     "join": run_join,
     "info": run_info,
     "measure": run_measure,
     "styles": run_styles,
+    "completion": run_completion,
     "help": run_help,
 }
 """What each subcommand runs."""
 
-
-def _job(arguments: argparse.Namespace, **fixed: object) -> "Job":
-    """The job that the arguments and their preset describe.
-
-    Args:
-        arguments: What the user gave.
-        fixed: What the command decides itself.
-    """
-    from pipeline.options.build import build_job
-
-    return build_job({**_given(arguments), **fixed})
-
-
-def _given(arguments: argparse.Namespace) -> dict[str, object]:
-    """What the arguments and their preset give."""
-    from pipeline.options.command_line import with_preset
-    from pipeline.options.presets import read_preset
-
-    given = dict(vars(arguments))
-    name = given.pop("preset")
-    return with_preset(given, read_preset(name) if name else {})
-
-
-def _progress(arguments: argparse.Namespace) -> "Progress":
-    """What tells of the run, as the user wants it."""
-    from pipeline.progress import open_progress
-
-    chosen = "none" if arguments.quiet and arguments.progress == "auto" else arguments.progress
-    verbose = arguments.verbose or not (arguments.quiet or chosen == "none")
-    return open_progress(chosen, verbose=verbose)
-
-
-def _tell(progress: "Progress", result: "Animated", output: Path | None) -> None:
-    """Tell what came of a run."""
-    assert output is not None
-    from pipeline.commands.pipes import shown_name
-    from pipeline.progress import Summary
-
-    for note in result.notes:
-        progress.note(note)
-    for warning in result.warnings:
-        progress.warn(warning)
-    progress.finish(Summary(result.frames, result.seconds, result.mean_rmse, shown_name(output)))
+COMPILING = ("animate", "solve", "render")
+"""Those that always launch kernels."""
 
 
 def _report(error: BaseException, arguments: argparse.Namespace) -> int:

@@ -13,7 +13,15 @@ from pathlib import Path
 from typing import Any, TextIO
 
 PLAIN_INTERVAL = 2.0
-"""Time between two plain lines [s]."""
+"""Time between the first plain lines [s]."""
+PLAIN_SHARE = 0.05
+"""Part of the time gone by between later ones: an hour has a hundred lines, not two thousand."""
+LONGEST_INTERVAL = 60.0
+"""Most time between two plain lines [s]: whoever watches a log must see that something moves."""
+LEAST_COLUMNS = 40
+"""A bar with its figures needs so many; a terminal that tells no size has 0."""
+ONCE = "first run: kernels are compiled, once on this machine"
+"""What a first run says before anything else."""
 
 
 @dataclass(frozen=True)
@@ -74,6 +82,14 @@ class Progress:
             rmse: Its error [code values].
         """
 
+    def kernels(self, done: int, total: int | None) -> None:
+        """Tell how many kernels are compiled, which happens once on a machine.
+
+        Args:
+            done: Number of kernels compiled so far.
+            total: Number of those that were missing, None if unknown yet.
+        """
+
     def note(self, text: str) -> None:
         """Tell a choice that was made, if the user wants to know."""
         if self._verbose:
@@ -88,6 +104,26 @@ class Progress:
 
         Args:
             summary: What to say.
+        """
+
+    def file(self, number: int, total: int, source: str, output: str) -> None:
+        """Tell that one of several inputs is begun.
+
+        Args:
+            number: Which one, from 1.
+            total: How many there are.
+            source: Its name.
+            output: What becomes of it.
+        """
+
+    def finish_all(self, line: str, frames: int, failed: list[str], code: int) -> None:
+        """Tell what came of several inputs.
+
+        Args:
+            line: All of it, for people.
+            frames: Frames of those that were done.
+            failed: Names of those that were not.
+            code: The exit code.
         """
 
     def close(self) -> None:
@@ -138,6 +174,14 @@ class PlainProgress(Progress):
         super().__init__(verbose=verbose)
         self._told = -PLAIN_INTERVAL
 
+    def kernels(self, done: int, total: int | None) -> None:
+        """Tell that it begins, how far it is if the last line is old enough, and that it ends."""
+        if total is None:
+            self._print(ONCE)
+        elif done in (0, total) or self._is_due():
+            self._told = time.perf_counter()
+            self._print(f"compiling kernels {done}/{total}")
+
     def frame(self, done: int, total: int | None, triangles: int, rmse: float) -> None:
         """Tell about a frame if the last line is old enough, or if it is the last frame."""
         self._tell(done, total, f"{triangles} triangles  rmse {rmse:.2f}")
@@ -147,16 +191,29 @@ class PlainProgress(Progress):
         self._tell(done, total, f"rmse {rmse:.2f}")
 
     def _tell(self, done: int, total: int | None, figures: str) -> None:
-        now = time.perf_counter()
-        if now - self._told < PLAIN_INTERVAL and done != total:
+        if done != total and done > 1 and not self._is_due():
             return
-        self._told = now
+        self._told = time.perf_counter()
         goal = "" if total is None else f"/{total}"
         self._print(f"frame {done}{goal}  {self._fps(done):.1f} fps  {figures}")
+
+    def _is_due(self) -> bool:
+        """Whether the last line is old enough."""
+        now = time.perf_counter()
+        wait = min(max(PLAIN_INTERVAL, PLAIN_SHARE * (now - self._start)), LONGEST_INTERVAL)
+        return now - self._told >= wait
 
     def finish(self, summary: Summary) -> None:
         """Tell the summary."""
         self._print(str(summary))
+
+    def file(self, number: int, total: int, source: str, output: str) -> None:
+        """Tell its name."""
+        self._print(f"{number}/{total} {source}")
+
+    def finish_all(self, line: str, frames: int, failed: list[str], code: int) -> None:
+        """Tell the summary of all."""
+        self._print(line)
 
 
 class BarProgress(Progress):
@@ -166,6 +223,15 @@ class BarProgress(Progress):
         super().__init__(verbose=verbose)
         self._bar: Any = None
 
+    def kernels(self, done: int, total: int | None) -> None:
+        """Move a bar of its own, which goes when all are compiled."""
+        if total is None:
+            self._print(ONCE)
+            return
+        self._move(done, total, "compiled once", " kernels")
+        if done == total:
+            self.close()
+
     def frame(self, done: int, total: int | None, triangles: int, rmse: float) -> None:
         """Move the bar."""
         self._move(done, total, f"{triangles} triangles, rmse {rmse:.2f}")
@@ -174,17 +240,19 @@ class BarProgress(Progress):
         """Move the bar."""
         self._move(done, total, f"rmse {rmse:.2f}")
 
-    def _move(self, done: int, total: int | None, figures: str) -> None:
+    def _move(self, done: int, total: int | None, figures: str, unit: str = " frames") -> None:
         try:
-            self._draw(done, total, figures)
+            self._draw(done, total, figures, unit)
         except OSError:
             hush(sys.stderr)  # the terminal is gone
 
-    def _draw(self, done: int, total: int | None, figures: str) -> None:
+    def _draw(self, done: int, total: int | None, figures: str, unit: str) -> None:
+        if self._bar is not None and self._bar.unit != unit:
+            self.close()
         if self._bar is None:
             from tqdm import tqdm  # only a terminal needs it
 
-            self._bar = tqdm(total=total, unit=" frames", file=sys.stderr, dynamic_ncols=True)
+            self._bar = tqdm(total=total, unit=unit, file=sys.stderr, dynamic_ncols=True)
         if self._bar.total is not None and done > self._bar.total:
             self._bar.total = None  # the file declared fewer frames than it has
         self._bar.set_postfix_str(figures, refresh=False)
@@ -194,6 +262,14 @@ class BarProgress(Progress):
         """Tell the summary below the bar."""
         self.close()
         self._print(str(summary))
+
+    def file(self, number: int, total: int, source: str, output: str) -> None:
+        """Tell its name."""
+        self._print(f"{number}/{total} {source}")
+
+    def finish_all(self, line: str, frames: int, failed: list[str], code: int) -> None:
+        """Tell the summary of all."""
+        self._print(line)
 
     def close(self) -> None:
         """Leave the bar as it stands and go on below it."""
@@ -209,7 +285,12 @@ class BarProgress(Progress):
 
 
 class JsonProgress(Progress):
-    """One JSON object a line, told apart by `event`: frame, note, warning, done."""
+    """One JSON object a line, told apart by `event`: kernels, frame, note, warning, done;
+    with several inputs also file and, at last, all done."""
+
+    def kernels(self, done: int, total: int | None) -> None:
+        """Write how far compiling is; the total is null before anything is known."""
+        self._write("kernels", done=done, total=total)
 
     def frame(self, done: int, total: int | None, triangles: int, rmse: float) -> None:
         """Write a frame's figures."""
@@ -240,6 +321,14 @@ class JsonProgress(Progress):
             output=str(summary.output),
         )
 
+    def file(self, number: int, total: int, source: str, output: str) -> None:
+        """Write its name and that of the output."""
+        self._write("file", number=number, total=total, source=source, output=output)
+
+    def finish_all(self, line: str, frames: int, failed: list[str], code: int) -> None:
+        """Write what came of all."""
+        self._write("all done", frames=frames, failed=failed, code=code)
+
     def _write(self, event: str, **values: object) -> None:
         tell(json.dumps({"event": event, **values}), sys.stdout)
 
@@ -250,7 +339,7 @@ PROGRESS: dict[str, type[Progress]] = {
     "json": JsonProgress,
     "none": Progress,
 }
-"""By name; `auto` picks the bar on a terminal, else plain lines."""
+"""By name; `auto` picks the bar on a terminal that has room for one, else plain lines."""
 
 CHOICES = ("auto", "plain", "json", "none")
 """What the command line offers: a bar that is not on a terminal is noise."""
@@ -264,5 +353,16 @@ def open_progress(name: str, *, verbose: bool = False) -> Progress:
         verbose: Whether notes are told.
     """
     if name == "auto":
-        name = "bar" if sys.stderr.isatty() else "plain"
+        name = "bar" if _has_room_for_a_bar() else "plain"
     return PROGRESS[name](verbose=verbose)
+
+
+def _has_room_for_a_bar() -> bool:
+    """Whether standard error is a terminal that can draw over a line, and is wide enough."""
+    if not sys.stderr.isatty() or os.environ.get("TERM") == "dumb":
+        return False
+    try:
+        columns = os.get_terminal_size(sys.stderr.fileno()).columns
+    except (OSError, ValueError):  # no real file, as in tests
+        return True
+    return columns >= LEAST_COLUMNS

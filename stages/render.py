@@ -11,7 +11,7 @@ from stages.snapshot import Snapshot
 from warp_kernels.device.device import Device
 from warp_kernels.drawing.canvas import Canvas
 from warp_kernels.errors import OptionError
-from warp_kernels.raster import MAX_SIDE
+from warp_kernels.limits import MAX_SIDE
 from warp_kernels.scene.stroke_lay import Lay
 from warp_kernels.styles import Style
 

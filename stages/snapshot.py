@@ -8,7 +8,7 @@ import numpy as np
 
 from stages.frame import Frame
 from stages.mesh import Mesh, centres_of
-from warp_kernels.energy.color_model import CHANNELS, ColorModel
+from warp_kernels.color_model import CHANNELS, ColorModel
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,6 +1,6 @@
 """One frame, from a seed mesh to a snapshot: the only file that orders the steps."""
 
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -10,7 +10,7 @@ from stages.mesh import Mesh
 from stages.motion.advect import Carried
 from stages.motion.boiling import Unrest
 from stages.motion.springs import springs_of
-from stages.optimize import OptimizeOptions, load_mesh, optimize, place_mesh
+from stages.optimize import load_mesh, optimize, place_mesh
 from stages.snapshot import Snapshot
 from stages.solve.approximate import Approximator
 from stages.solve.bench import Bench
@@ -20,15 +20,14 @@ from stages.solve.convergence import Convergence
 from stages.solve.quality import FALL, Trial, smallest_that_reaches
 from stages.solve.steady_colors import steadied
 from stages.spaces import SPACES
-from stages.topology import TOPOLOGIES, Goal
+from stages.topology import TOPOLOGIES
 from stages.topology.appraise import Appraiser
-from stages.topology.goal import SLIVER_HEIGHT
-from stages.topology.refine import RefineOptions
+from stages.topology.goal import SLIVER_HEIGHT, Goal
+from stages.triangulate_options import TriangulateOptions
+from warp_kernels.color_model import CHANNELS, ColorModel
 from warp_kernels.device.device import Device
-from warp_kernels.energy.color_model import CHANNELS, COLOR_MODELS, ColorModel
-from warp_kernels.energy.variant_energies import SUMS
+from warp_kernels.energy.solver_kernels import limiting_kernels, solving_kernels
 from warp_kernels.energy.workspace import Workspace
-from warp_kernels.errors import OptionError
 
 SPRING = 39.0
 """Strength of the temporal term where the motion is certain, as a multiple of the mean squared
@@ -49,67 +48,6 @@ CALM_QUALITY = 0.02
 """A later frame keeps its number of triangles while its rmse is this close to the wanted one."""
 MOST_DRIFT = 0.02
 """Most that the number of triangles changes from one frame to the next, as a part of it."""
-
-
-@dataclass(frozen=True)
-class TriangulateOptions:
-    """How one picture becomes triangles.
-
-    Raises:
-        OptionError: If an option has an impossible value.
-    """
-
-    color: str = field(
-        default="constant",
-        metadata={"help": "colour model that is optimised", "choices": tuple(COLOR_MODELS)},
-    )
-    iterations: int = field(
-        default=240, metadata={"help": "optimiser iterations for the first frame of a shot"}
-    )
-    frame_iterations: int = field(
-        default=48, metadata={"help": "most optimiser iterations for each later frame"}
-    )
-    topology: str = field(
-        default="energy",
-        metadata={
-            "help": "flips that lower the energy, or the paper's Delaunay flips",
-            "choices": tuple(TOPOLOGIES),
-        },
-    )
-    sums: str = field(
-        default="edges",
-        metadata={"help": "how moments are summed; equal results", "choices": SUMS},
-    )
-    space: str = field(
-        default="rgb",
-        metadata={
-            "help": "colour space in which the error is measured; colours are fitted in RGB",
-            "choices": tuple(SPACES),
-        },
-    )
-    optimize: OptimizeOptions = field(default_factory=OptimizeOptions)
-    refine: RefineOptions = field(default_factory=RefineOptions)
-
-    def __post_init__(self) -> None:
-        for name in ("iterations", "frame_iterations"):
-            if getattr(self, name) < 0:
-                flag = name.replace("_", "-")
-                raise OptionError(f"--{flag} {getattr(self, name)}: must be 0 or more")
-        for name, known in (
-            ("color", COLOR_MODELS),
-            ("topology", TOPOLOGIES),
-            ("sums", SUMS),
-            ("space", SPACES),
-        ):
-            if getattr(self, name) not in known:
-                raise OptionError(
-                    f"--{name} {getattr(self, name)}: unknown; choose from {', '.join(known)}"
-                )
-
-    @property
-    def model(self) -> ColorModel:
-        """The colour model that is optimised."""
-        return COLOR_MODELS[self.color]
 
 
 class Triangulator:
@@ -141,19 +79,20 @@ class Triangulator:
         self.options = _against(options, self._space.scale)
         self._device, self._size = device, size
         self._least = options.refine.least_count(*size)
+        fitted = max(options.model, drawn or options.model, key=lambda model: model.degree)
+        device.expect(limiting_kernels(device, options.model, fitted))
         self._even = self._bench(weighted=False)
         self._weighted: Bench | None = None
         self._use(self._even)
         self._solved: Snapshot | None = None  # with energies by the colours that are optimised
-        self._fitting = self._workspace
-        fitted = max(options.model, drawn or options.model, key=lambda model: model.degree)
-        if fitted is not options.model or options.space != "rgb":
-            self._fitting = Workspace(device, size, fitted)
+        shared = fitted is options.model and options.space == "rgb"
+        self._fitting = self._workspace if shared else Workspace(device, size, fitted)
         self._limiter = Limiter(self._fitting)
 
     def _bench(self, *, weighted: bool) -> Bench:
         """Make what pictures with weights, or those without, are worked on with."""
         options = self.options
+        self._device.expect(solving_kernels(self._device, options.model, options.sums, weighted))
         workspace = Workspace(self._device, self._size, options.model, options.sums, weighted)
         appraiser = Appraiser(workspace, SLIVER_HEIGHT)
         approximator = Approximator(
@@ -209,6 +148,8 @@ class Triangulator:
             bench = self._weighted
             bench.load(pixels, frame.weights)
         self._use(bench)
+        if self._fitting is not self._even.workspace:
+            self._fitting.load_image(frame.pixels)
 
     def next(self, frame: Frame, seed: Carried, earlier: Snapshot | None = None) -> Snapshot:
         """Triangulate a frame that continues a shot.
@@ -227,7 +168,7 @@ class Triangulator:
         spring = SPRING * self._rmse(seed.mesh) ** 2
         unrest = self._unrest(seed, earlier)
         if unrest is not None:
-            seed = replace(seed, trust=seed.trust * (1.0 - unrest.values))
+            seed = unrest.freed(seed)
         mesh = self._follow(seed.mesh, seed, spring, each, frame.weights)
         if unrest is not None:
             renewing = int(RENEWED * rounds)
@@ -283,6 +224,8 @@ class Triangulator:
         """
         if self._fitting is self._even.workspace:
             self._even.load(frame.pixels)
+        else:
+            self._fitting.load_image(frame.pixels)
         return self._snapshot(frame, mesh)
 
     def recall(self, frame: Frame, snapshot: Snapshot) -> None:
@@ -367,8 +310,6 @@ class Triangulator:
     def _snapshot(self, frame: Frame, mesh: Mesh, earlier: Snapshot | None = None) -> Snapshot:
         """Fit the colours to a mesh that was just optimised, by all pixels alike."""
         fitting = self._fitting
-        if fitting is not self._even.workspace:
-            fitting.load_image(frame.pixels)
         place_mesh(fitting, mesh)
         coefficients, energies, counts = fitting.fit()
         if earlier is not None:

@@ -7,9 +7,10 @@ read syntax only and import nothing, so they also judge a small planted source s
 import ast
 import re
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from graphlib import CycleError, TopologicalSorter
 from pathlib import PurePosixPath
 
 LEVELS = {"warp_kernels": 0, "stages": 1, "pipeline": 2, "trimotion": 3}
@@ -109,6 +110,27 @@ class Module:
                 base = folder[: len(folder) - node.level + 1] if node.level else ()
                 parts = (*base, node.module) if node.module else base
                 yield node.lineno, ".".join(parts)
+
+    @property
+    def room(self) -> str:
+        """The folder of a package that it lies in, or the file if it lies on top."""
+        return "/".join(self.path.removesuffix(".py").split("/")[:2])
+
+
+def upward_arrow(modules: Sequence[Module]) -> list[str]:
+    """Rooms of a circle of imports, the first also last; none if there is no circle."""
+    rooms = {module.room for module in modules}
+    graph: dict[str, set[str]] = {room: set() for room in rooms}
+    for module in modules:
+        for _, name in module.imports():
+            other = "/".join(name.split(".")[:2])
+            if other in rooms and other != module.room:
+                graph[module.room].add(other)
+    try:
+        TopologicalSorter(graph).prepare()
+    except CycleError as error:
+        return list(error.args[1])
+    return []
 
 
 def imports_point_downwards(module: Module) -> Iterator[Finding]:

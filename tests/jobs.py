@@ -4,7 +4,7 @@ from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
-from pipeline.job import Job
+from pipeline.options.job import Job
 from pipeline.options.solve_options import SolveOptions
 
 PARTS = ("solve", "look", "output", "run")

@@ -12,8 +12,8 @@ from stages.mesh import Mesh, areas_of, mesh_of
 from stages.optimize import load_mesh
 from stages.snapshot import Snapshot
 from stages.validate import assert_valid
+from warp_kernels.color_model import ColorModel
 from warp_kernels.device.device import Device
-from warp_kernels.energy.color_model import ColorModel
 from warp_kernels.energy.workspace import Workspace
 
 POISON = 77

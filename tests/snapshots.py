@@ -15,7 +15,7 @@ from stages.edits import (
 )
 from stages.mesh import Mesh
 from stages.snapshot import Snapshot
-from warp_kernels.energy.color_model import CONSTANT, ColorModel
+from warp_kernels.color_model import CONSTANT, ColorModel
 
 
 def snapshot_with(

@@ -13,8 +13,9 @@ import numpy as np
 import pytest
 from scipy.ndimage import gaussian_filter
 
-from pipeline.job import Job
-from pipeline.loop.animate import Animated, animate
+from pipeline.loop.animate import animate
+from pipeline.loop.result import Animated
+from pipeline.options.job import Job
 from pipeline.progress import Progress
 from pipeline.track import TrackReader
 from sample_videos.make_shapes import CUT_FRAME, FRAME_COUNT
@@ -22,12 +23,12 @@ from stages.flows.dis import Dis
 from stages.flows.field import FlowField
 from stages.flows.view import View
 from stages.layouts.grid import Grid
-from stages.masks.regions import Region
+from stages.masks.region import Region
 from stages.media import FrameRange, open_decoder
 from stages.mesh import Mesh
 from stages.snapshot import Snapshot
-from stages.topology.refine import RefineOptions
-from stages.triangulate import TriangulateOptions
+from stages.topology.refine_options import RefineOptions
+from stages.triangulate_options import TriangulateOptions
 from stages.validate import assert_valid
 from tests import media_samples as samples
 from tests.jobs import changed, job_of

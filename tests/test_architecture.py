@@ -1,5 +1,6 @@
 """The house rules that a machine can check, over the whole repository; proof that each bites."""
 
+import ast
 import dataclasses
 import importlib
 import re
@@ -10,7 +11,14 @@ from pathlib import Path
 import pytest
 
 from tests import architecture_rules
-from tests.architecture_rules import LEVELS, RULES, Module, foreign_paths, markdown_links
+from tests.architecture_rules import (
+    LEVELS,
+    RULES,
+    Module,
+    foreign_paths,
+    markdown_links,
+    upward_arrow,
+)
 
 ROOT = Path(__file__).parents[1]
 RUNTIME_DEPENDENCIES = {
@@ -50,7 +58,7 @@ LONG_BODY = '"""M."""\ndef f():\n    """F."""\n' + "    x = 1\n" * 45
 
 # (rule, path, source): each source departs from the rule once.
 PLANTED = [
-    ("imports_point_downwards", "stages/a.py", "from pipeline.job import Job"),
+    ("imports_point_downwards", "stages/a.py", "from pipeline.options.job import Job"),
     ("imports_point_downwards", "warp_kernels/a.py", "def f():\n    import stages.mesh"),
     ("imports_point_downwards", "warp_kernels/a.py", "import numpy, pipeline"),
     ("imports_stay_at_home", "stages/a.py", "import warp as wp"),
@@ -183,6 +191,15 @@ def test_what_is_allowed_passes(name: str, path: str, source: str) -> None:
     assert not list(getattr(architecture_rules, name)(Module(path, source)))
 
 
+def test_rooms_import_downwards() -> None:
+    """Folders of a package stand over each other: none imports, by others or not, from itself."""
+    assert not upward_arrow(MODULES)
+    lower = Module("stages/low/a.py", "import stages.high.b")
+    planted = [lower, Module("stages/high/b.py", "def f():\n    from stages.low import c")]
+    assert set(upward_arrow(planted)) == {"stages/low", "stages/high"}
+    assert not upward_arrow(planted[:1])
+
+
 def test_every_rule_is_planted() -> None:
     """A new rule comes with a violation that it finds, and the rules have files to judge."""
     assert {rule.__name__ for rule in RULES} == {name for name, _, _ in PLANTED}
@@ -231,6 +248,23 @@ def test_mutable_registry_member_is_found() -> None:
         assert not is_frozen_dataclass(planted)
     assert is_frozen_dataclass(frozen)
     assert is_frozen_dataclass(frozen(1))
+
+
+def class_names(modules: list[Module]) -> dict[str, list[str]]:
+    """The modules that define a class, by its name."""
+    found: dict[str, list[str]] = {}
+    for module in modules:
+        for node in ast.walk(module.tree):
+            if isinstance(node, ast.ClassDef):
+                found.setdefault(node.name, []).append(module.path)
+    return found
+
+
+def test_no_two_classes_have_one_name() -> None:
+    """A name in a message, a track or a search leads to one place; a planted pair is found."""
+    assert not {name: paths for name, paths in class_names(MODULES).items() if len(paths) > 1}
+    pair = [Module("stages/a.py", "class A: ..."), Module("pipeline/b.py", "class A: ...")]
+    assert class_names(pair) == {"A": ["stages/a.py", "pipeline/b.py"]}
 
 
 def test_runtime_dependencies_are_the_six() -> None:

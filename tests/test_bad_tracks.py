@@ -165,7 +165,7 @@ import numpy as np
 from stages.render import Renderer
 from tests.kernel_samples import noise, random_mesh
 from tests.kernel_samples import snapshot_of
-from warp_kernels.energy.color_model import CONSTANT
+from warp_kernels.color_model import CONSTANT
 from warp_kernels.device.device import Device
 from warp_kernels.styles import STYLES
 mesh = random_mesh(96, 64, 40)

@@ -18,9 +18,11 @@ from stages.snapshot import Snapshot
 from tests.meshes import HEIGHT, WIDTH, random_mesh, two_triangles
 from tests.snapshots import edited, restless_shot, snapshot_with
 from tests.tracks import write_clip
+from warp_kernels.color_model import LINEAR, QUADRATIC, ColorModel
 from warp_kernels.device.device import Device
-from warp_kernels.energy.color_model import LINEAR, QUADRATIC, ColorModel
-from warp_kernels.styles import STYLES, Flat, Gradient, Style
+from warp_kernels.styles import STYLES, Style
+from warp_kernels.styles.flat import Flat
+from warp_kernels.styles.gradient import Gradient
 
 SIZE = (2 * WIDTH, 2 * HEIGHT)
 

@@ -8,7 +8,6 @@ import cv2
 import numpy as np
 import pytest
 
-import stages.triangulate
 from stages.edits import split_triangles
 from stages.flows.dis import Dis
 from stages.flows.passage import Passage
@@ -17,10 +16,12 @@ from stages.layouts.importance import Importance
 from stages.mesh import Mesh
 from stages.motion.advect import Carried, advect
 from stages.motion.boiling import Unrest
+from stages.motion.springs import springs_of
 from stages.snapshot import Snapshot
 from stages.topology import TOPOLOGIES
-from stages.topology.refine import RefineOptions
-from stages.triangulate import TriangulateOptions, Triangulator
+from stages.topology.refine_options import RefineOptions
+from stages.triangulate import Triangulator
+from stages.triangulate_options import TriangulateOptions
 from stages.validate import assert_valid
 from tests import media_samples as samples
 from tests.kernel_samples import frame_of, waves
@@ -124,23 +125,14 @@ def test_what_changes_otherwise_does_not_boil(name: str) -> None:
     assert unrest_of(*changes()[name])[1] is None
 
 
-def test_springs_let_go_where_it_boils(monkeypatch) -> None:
+def test_springs_let_go_where_it_boils() -> None:
     """Those of the calm half are firm, those of the other one weak."""
-    held: list[tuple[Mesh, np.ndarray]] = []
-    load = stages.triangulate.load_mesh
-
-    def watched(workspace, mesh: Mesh, springs: np.ndarray | None = None) -> None:
-        """Keep what is held."""
-        if springs is not None:
-            held.append((mesh, springs[:, 2]))
-        load(workspace, mesh, springs)
-
-    monkeypatch.setattr(stages.triangulate, "load_mesh", watched)
-    solver = triangulator()
-    before = first_of(solver, half_calm(0))
+    before = first_of(triangulator(), half_calm(0))
     seed = carried(before, half_calm(0), half_calm(1))
-    solver.next(frame_of(half_calm(1), 1), seed, before)
-    mesh, strengths = held[0]
+    mesh, unrest = unrest_of(half_calm(0), half_calm(1))
+    assert unrest is not None
+    np.testing.assert_array_equal(mesh.vertices, seed.mesh.vertices)
+    strengths = springs_of(mesh, unrest.freed(seed), 1.0, None)[:, 2]
     x = mesh.vertices[:, 0]
     calm = strengths[x < MIDDLE - 24]
     assert strengths[x > MIDDLE + 16].mean() < 0.02 * calm.mean()

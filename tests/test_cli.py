@@ -2,11 +2,11 @@
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
 import time
-import types
 from pathlib import Path
 
 import cv2
@@ -16,9 +16,12 @@ import pytest
 from pipeline import cli
 from pipeline.cli import main
 from pipeline.options.command_line import job_options
+from pipeline.track import TrackReader
 from stages.flows import FLOWS
 from stages.layouts import LAYOUTS
-from warp_kernels.energy.color_model import COLOR_MODELS
+from stages.media import open_decoder
+from tests import media_samples as samples
+from warp_kernels.color_model import COLOR_MODELS
 from warp_kernels.errors import MediaError, OptionError, OutputError, TrackError, TrimotionError
 from warp_kernels.styles import STYLES
 
@@ -108,32 +111,27 @@ FAILURES = [
 
 
 @pytest.fixture
-def fake_animate(monkeypatch: pytest.MonkeyPatch) -> list:
-    """Replace the conversion; gives the list of the jobs that reached it."""
-    jobs: list = []
-
-    def animate(job, progress):
-        jobs.append(job)
-        progress.frame(1, 2, 700, 20.5)
-        progress.frame(2, 2, 702, 21.5)
-        return types.SimpleNamespace(
-            frames=2, seconds=0.5, mean_rmse=21.0, warnings=("it breaks off",), notes=("as bt709",)
-        )
-
-    fake = types.ModuleType("pipeline.loop.animate")
-    fake.animate = animate
-    monkeypatch.setitem(sys.modules, "pipeline.loop.animate", fake)
-    return jobs
+def doubtful(tmp_path: Path) -> list[str]:
+    """The command that converts a clip of two frames, with something to note and to warn of."""
+    clip = samples.write_video(tmp_path / "in.mp4", [samples.picture(32, 24, n) for n in (0, 1)])
+    black = [np.zeros((24, 32, 3), np.uint8)] * 2
+    weights = samples.write_video(tmp_path / "w.mkv", black, codec="ffv1", pixel_format="gray")
+    quick = ["--triangles", "20", "--iterations", "2", "--frame-iterations", "1"]
+    command = ["animate", str(clip), "-o", str(tmp_path / "out.mp4"), *quick]
+    return [*command, "--weights", str(weights)]
 
 
-def run_failing(monkeypatch: pytest.MonkeyPatch, error: BaseException, *more: str) -> int:
+WARNING = "warning: {}: black in every frame; paint white what counts"
+NOTE = "note: --focus picture:file={}"
+
+
+def run_failing(error: BaseException, *more: str) -> int:
     """Run a command that raises."""
 
     def fail(arguments) -> None:
         raise error
 
-    monkeypatch.setitem(cli.COMMANDS, "info", fail)
-    return main(["info", "x", *more])
+    return main(["info", "x", *more], {"info": fail})
 
 
 def assert_one_line(captured, *words: str) -> None:
@@ -148,13 +146,12 @@ def assert_one_line(captured, *words: str) -> None:
 
 @pytest.mark.parametrize(("options", "word"), USAGE_ERRORS, ids=[o for o, _ in USAGE_ERRORS])
 def test_impossible_option_is_one_line(
-    options: str, word: str, fake_animate: list, tmp_path: Path, monkeypatch, capsys
+    options: str, word: str, tmp_path: Path, monkeypatch, capsys
 ) -> None:
-    """Exit code 2, what, the value or what is allowed, and nothing done."""
+    """Exit code 2, what, the value or what is allowed, before it is seen that there is no input."""
     monkeypatch.chdir(tmp_path)
     assert main(["animate", "in.mp4", "-o", "out.mp4", *options.split()]) == 2
     assert_one_line(capsys.readouterr(), word)
-    assert not fake_animate
     assert not list(tmp_path.iterdir())
 
 
@@ -191,21 +188,21 @@ def test_empty_name_is_a_usage_error(arguments: list[str], capsys) -> None:
 
 
 @pytest.mark.parametrize(("error", "code", "line"), FAILURES, ids=[str(f[1]) for f in FAILURES])
-def test_failure_becomes_line_and_exit_code(error, code: int, line: str, monkeypatch, capsys):
+def test_failure_becomes_line_and_exit_code(error, code: int, line: str, capsys):
     """Every failure of a command, expected or not."""
-    assert run_failing(monkeypatch, error) == code
+    assert run_failing(error) == code
     assert_one_line(capsys.readouterr(), line)
 
 
-def test_debug_shows_the_traceback(monkeypatch, capsys) -> None:
+def test_debug_shows_the_traceback(capsys) -> None:
     """The traceback comes before the line, which stays."""
-    assert run_failing(monkeypatch, OptionError("--x 3: no"), "--debug") == 2
+    assert run_failing(OptionError("--x 3: no"), "--debug") == 2
     lines = capsys.readouterr().err.splitlines()
     assert lines[0].startswith("Traceback")
     assert lines[-1] == "trimotion: error: --x 3: no"
 
 
-def test_termination_cleans_up(monkeypatch, capsys) -> None:
+def test_termination_cleans_up(capsys) -> None:
     """SIGTERM unwinds the command, so that open outputs are removed, and ends with 143."""
     cleaned = []
 
@@ -217,8 +214,7 @@ def test_termination_cleans_up(monkeypatch, capsys) -> None:
             cleaned.append(True)
 
     before = signal.getsignal(signal.SIGTERM)
-    monkeypatch.setitem(cli.COMMANDS, "info", wait)
-    assert main(["info", "x"]) == 143
+    assert main(["info", "x"], {"info": wait}) == 143
     assert cleaned == [True]
     assert signal.getsignal(signal.SIGTERM) is before
     assert_one_line(capsys.readouterr(), "terminated")
@@ -233,22 +229,20 @@ def test_termination_cleans_up(monkeypatch, capsys) -> None:
         (["render", "a.mtrk", "-o", "b.mp4"], "no unfinished file"),
     ],
 )
-def test_interruption_tells_what_is_left(command, hint: str, monkeypatch, capsys) -> None:
+def test_interruption_tells_what_is_left(command, hint: str, capsys) -> None:
     """A track goes on; every other file is whole or not there."""
 
     def interrupt(arguments) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setitem(cli.COMMANDS, command[0], interrupt)
-    assert main(command) == 130
+    assert main(command, {command[0]: interrupt}) == 130
     assert_one_line(capsys.readouterr(), "interrupted", hint)
 
 
 def test_reader_that_leaves_is_no_error() -> None:
     """`trimotion ... | head -0` prints no traceback."""
     script = "import sys; from pipeline import cli\n"
-    script += "cli.COMMANDS['info'] = lambda a: print('x' * 100000)\n"
-    script += "sys.exit(cli.main(['info', 'x']))"
+    script += "sys.exit(cli.main(['info', 'x'], {'info': lambda a: print('x' * 100000)}))"
     read_end, write_end = os.pipe()
     os.close(read_end)
     command = [sys.executable, "-c", script]
@@ -295,38 +289,45 @@ def test_version(capsys) -> None:
     assert capsys.readouterr().out.startswith("trimotion ")
 
 
-def test_animate_hands_over_the_job(fake_animate: list, capsys) -> None:
-    """The job holds what was asked for; the last line tells what came of it."""
-    options = "--triangles 70 --style flat --style edges:width=2 --threads 3 --progress plain"
-    assert main(["animate", "in.mp4", "-o", "out.mp4", "--no-audio", *options.split()]) == 0
-    (job,) = fake_animate
-    assert job.solve.triangulate.refine.triangles == 70
-    assert [type(style).__name__ for style in job.look.styles] == ["Flat", "Edges"]
-    assert (job.run.threads, job.output.encode.threads, job.output.encode.audio) == (3, 3, False)
+def test_animate_does_what_was_asked_for(doubtful: list[str], tmp_path: Path, capsys) -> None:
+    """Options of all kinds arrive; the last lines tell what came of it."""
+    track = tmp_path / "t.mtrk"
+    options = ["--style", "flat", "--style", "paper:color=#f00,grain=0,sheets=0", "--seed", "3"]
+    files = ["--track", str(track), "--size", "64x48", "--threads", "1", "--progress", "plain"]
+    assert main([*doubtful, *options, *files]) == 0
+    with TrackReader(track) as reader:
+        assert reader.header.solve.triangulate.refine.triangles == 20
+        assert reader.header.solve.seed == 3
+    with open_decoder(tmp_path / "out.mp4") as decoder:
+        red = next(decoder).pixels
+    assert red.shape == (48, 64, 3)
+    np.testing.assert_allclose(red.reshape(-1, 3).mean(axis=0), (255, 0, 0), atol=6)
     captured = capsys.readouterr()
     assert captured.out == ""
-    assert "2 frames in 0.5 s (4.0 fps), mean rmse 21.00: out.mp4" in captured.err
-    assert "warning: it breaks off" in captured.err
-    assert "note: as bt709" in captured.err
+    told = r"2 frames in \d+\.\d s \(\d+\.\d fps\), mean rmse \d+\.\d\d: .*out\.mp4\n"
+    assert re.search(told, captured.err)
+    for line in (WARNING, NOTE):
+        assert line.format(tmp_path / "w.mkv") in captured.err
 
 
 @pytest.mark.parametrize(
     ("options", "expected"),
     [
-        (["-q"], ["warning: it breaks off"]),
-        (["--progress", "none"], ["warning: it breaks off"]),
-        (["--progress", "none", "-v"], ["note: as bt709", "warning: it breaks off"]),
+        (["-q"], [WARNING]),
+        (["--progress", "none"], [WARNING]),
+        (["--progress", "none", "-v"], [NOTE, WARNING]),
     ],
 )
-def test_quiet_and_verbose(options, expected, fake_animate: list, capsys) -> None:
+def test_quiet_and_verbose(options, expected, doubtful: list[str], tmp_path: Path, capsys) -> None:
     """Damage is always told, choices unless told to be quiet."""
-    assert main(["animate", "in.mp4", "-o", "out.mp4", *options]) == 0
-    assert capsys.readouterr().err == "".join(f"trimotion: {line}\n" for line in expected)
+    assert main([*doubtful, *options]) == 0
+    lines = [line.format(tmp_path / "w.mkv") for line in expected]
+    assert capsys.readouterr().err == "".join(f"trimotion: {line}\n" for line in lines)
 
 
-def test_json_progress_is_on_standard_output(fake_animate: list, capsys) -> None:
+def test_json_progress_is_on_standard_output(doubtful: list[str], capsys) -> None:
     """Programs read standard output; each line is one object."""
-    assert main(["animate", "in.mp4", "-o", "out.mp4", "--progress", "json"]) == 0
+    assert main([*doubtful, "--progress", "json"]) == 0
     events = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
     assert [event["event"] for event in events] == ["frame", "frame", "note", "warning", "done"]
 

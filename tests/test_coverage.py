@@ -8,9 +8,9 @@ from stages.layouts.grid import Grid
 from stages.mesh import Mesh
 from tests.kernel_samples import delaunay_mesh, noise, random_mesh, snapshot_of
 from tests.oracles.coverage import covered_pixels, rounded
+from warp_kernels.color_model import CONSTANT
 from warp_kernels.device.device import Device
 from warp_kernels.drawing.gbuffer import record_gbuffer
-from warp_kernels.energy.color_model import CONSTANT
 
 NOBODY = -1
 

@@ -9,8 +9,8 @@ from stages.mesh import Mesh, mesh_of
 from stages.validate import assert_valid
 from tests.kernel_samples import noise, poisoned_workspace, random_mesh, random_weights, waves
 from tests.oracles.gradient import umbrella_gradient, vertex_gradient
+from warp_kernels.color_model import COLOR_MODELS, CONSTANT, LINEAR, QUADRATIC, ColorModel
 from warp_kernels.device.device import Device
-from warp_kernels.energy.color_model import COLOR_MODELS, CONSTANT, LINEAR, QUADRATIC, ColorModel
 
 DIRECTION_TOLERANCE = 1e-9
 """Sine of the angle allowed between two directions: rounding of float64 sums."""

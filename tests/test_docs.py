@@ -139,6 +139,15 @@ def test_commands_are_commands(page: Path) -> None:
             parser.parse_args(shlex.split(command)[1:])
 
 
+def test_commands_write_into_out_and_can_be_run_again() -> None:
+    """Nothing is left beside `out/`, and nobody is told that an output exists already."""
+    for command in (line for page in PAGES for line in doc_commands.shown_by(page)):
+        written = doc_commands.written_by(command)
+        if command.startswith("trimotion ") and written:
+            assert written.startswith("out/"), command
+            assert "--overwrite" in command or "--resume" in command, command
+
+
 def test_styles_are_told_of_as_the_registry_has_them() -> None:
     text = style_tables.PAGE.read_text("utf-8")
     assert style_tables.renewed(text) == text, "run benchmarks/style_tables.py --write"

@@ -282,17 +282,19 @@ def test_interruption_leaves_nothing(clip: Path, name: str, error: type[BaseExce
     assert sorted(clip.parent.iterdir()) == before
 
 
-def test_full_disk_is_an_output_error(clip: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """An error of the system while moving the file is told, and nothing is left."""
+def test_error_of_the_system_is_an_output_error(clip: Path) -> None:
+    """What the system says while the file is moved is told, and nothing is left."""
+    target = clip.with_name("out.mp4")
 
-    def refuse(source: object, target: object) -> None:
-        raise OSError(28, "No space left on device")
+    def write_while_another_makes_a_folder() -> None:
+        with open_encoder(target, probe(clip), (64, 48), EncodeOptions()) as encoder:
+            encoder.write(samples.picture(64, 48), 0, samples.MILLISECOND)
+            target.mkdir()
 
-    monkeypatch.setattr("stages.media.writing.commit.os.replace", refuse)
-    before = sorted(clip.parent.iterdir())
-    with pytest.raises(OutputError, match="no space left"):
-        convert(clip, clip.with_name("out.mp4"))
-    assert sorted(clip.parent.iterdir()) == before
+    with pytest.raises(OutputError, match=r"out\.mp4: .*is a directory"):
+        write_while_another_makes_a_folder()
+    assert not list(target.iterdir())
+    assert sorted(clip.parent.iterdir()) == sorted([clip, target])
 
 
 def test_no_frame_is_an_error(clip: Path) -> None:

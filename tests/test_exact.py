@@ -13,13 +13,13 @@ import warp as wp
 from stages.render import Renderer
 from stages.snapshot import Snapshot
 from tests.kernel_samples import random_mesh
+from warp_kernels.color_model import COLOR_MODELS, CONSTANT, LINEAR
 from warp_kernels.device.device import Device, Phase
 from warp_kernels.drawing.layers import Layers
 from warp_kernels.drawing.paint import Paint
-from warp_kernels.energy.color_model import COLOR_MODELS, CONSTANT, LINEAR
 from warp_kernels.energy.nearby_colors import Nearby
+from warp_kernels.energy.sums import SUMS
 from warp_kernels.energy.topology_survey import Survey
-from warp_kernels.energy.variant_energies import SUMS
 from warp_kernels.energy.workspace import Workspace
 from warp_kernels.styles import STYLES
 

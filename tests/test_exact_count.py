@@ -14,8 +14,8 @@ from stages.topology.goal import SLIVER_HEIGHT
 from stages.validate import assert_valid
 from tests.kernel_samples import waves
 from tests.meshes import random_mesh
+from warp_kernels.color_model import CONSTANT
 from warp_kernels.device.device import Device
-from warp_kernels.energy.color_model import CONSTANT
 from warp_kernels.energy.workspace import Workspace
 
 

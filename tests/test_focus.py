@@ -13,10 +13,9 @@ import pytest
 
 from pipeline.cli import main
 from pipeline.envelope import InShot
-from pipeline.loop.animate import animate
+from pipeline.loop.animate import animate, solve
 from pipeline.loop.attention import UNIT, WINDOW, Attention, reach_of
 from pipeline.loop.face_tracks import CARRIED, MEMORY, SPACING, FaceTracks
-from pipeline.loop.processes import solve_in_parts
 from pipeline.options.members import parse_member
 from pipeline.options.solve_options import SolveOptions
 from pipeline.progress import Progress
@@ -291,7 +290,7 @@ def test_ranges_resume_and_jobs_are_the_whole(clip: Path, whole: Path, tmp_path:
         solve_to(track, clip, resume=True)
         assert rows_of(track) == rows
     job = job_of(clip, track=tmp_path / "j.mtrk", triangulate=QUICK, jobs=2)
-    solve_in_parts(job.solve, job.output, job.run, Progress())
+    solve(job.solve, job.output, job.run, Progress())
     assert rows_of(tmp_path / "j.mtrk")["meshes"] == rows["meshes"]
 
 

@@ -15,7 +15,7 @@ import pytest
 import trimotion
 from pipeline.library.keywords import KEYWORDS, PRESET, TAKEN, Name, keyword_of, options_of
 from pipeline.library.wording import in_keywords
-from pipeline.options.command_line import RANGE_FIELDS, Option, job_options
+from pipeline.options.command_line import RANGE_OPTIONS, Option, job_options
 from tests.test_cli import USAGE_ERRORS
 
 ROOT = Path(__file__).parents[1]
@@ -99,7 +99,7 @@ def test_keywords_are_the_options(function: str) -> None:
     surplus = hints.keys() - options.keys() - preset
     assert not surplus, f"remove from {advice}: {surplus}"
     for keyword, option in options.items():
-        assert agrees(hints[keyword], option), f"{keyword} in {advice}: {option.declared.kind}"
+        assert agrees(hints[keyword], option), f"{keyword} in {advice}: {option.kind}"
 
 
 def home_of(option: Option) -> str:
@@ -111,7 +111,7 @@ def type_of(option: Option) -> str:
     """Type of an option's keyword, as it is written."""
     if option.is_repeatable:
         return "str | Sequence[str]"
-    return option.declared.kind
+    return option.kind
 
 
 def agrees(hint: object, option: Option) -> bool:
@@ -119,15 +119,14 @@ def agrees(hint: object, option: Option) -> bool:
     if hint is typing.Any:
         return True
     kinds = set(typing.get_args(hint)) or {hint}
-    declared = option.declared
-    is_optional = declared.kind.endswith("| None")
+    is_optional = option.kind.endswith("| None")
     if option.is_repeatable:
         return kinds == {str, Sequence[str]}
-    wanted = TYPES.get(declared.kind.removesuffix(" | None"), {str})
+    wanted = TYPES.get(option.kind.removesuffix(" | None"), {str})
     may_be = [wanted, wanted | set(typing.get_args(Name))]
-    if declared.kind.startswith("Fraction"):
+    if option.kind.startswith("Fraction"):
         may_be = [{str, float, Fraction}]
-    elif option.declared in RANGE_FIELDS:
+    elif option in RANGE_OPTIONS:
         may_be = [{str, int}, {str, float}]
     return (kinds - {NoneType}) in may_be and (NoneType in kinds) == is_optional
 

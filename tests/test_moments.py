@@ -17,16 +17,16 @@ from tests.kernel_samples import (
 from tests.oracles.coverage import covered_pixels
 from tests.oracles.moments import moments
 from tests.oracles.variants import variants
+from warp_kernels.color_model import COLOR_MODELS, CONSTANT, LINEAR, ColorModel
 from warp_kernels.device.device import Device
-from warp_kernels.energy.color_model import COLOR_MODELS, CONSTANT, LINEAR, ColorModel
 from warp_kernels.energy.fit import READABLE
-from warp_kernels.energy.variants import DIRECTIONS, TRIANGLE_VARIANTS
 from warp_kernels.energy.workspace import Workspace
 from warp_kernels.errors import OptionError
+from warp_kernels.limits import MAX_SIDE
 from warp_kernels.moments.moment_layout import MomentLayout, layout_of_moments, moment_types
 from warp_kernels.moments.pixel_moments import check_size
 from warp_kernels.moments.prefix_tables import BLOCK_ROWS, record_image_tables, table_length
-from warp_kernels.raster import MAX_SIDE
+from warp_kernels.moments.variants import DIRECTIONS, TRIANGLE_VARIANTS
 
 Sums = tuple[np.ndarray, np.ndarray]
 """Colour moments [T, 13, 4 K] and area moments [T, 13, G]."""

@@ -1,6 +1,7 @@
 """Options: declared once in dataclasses, read for the command line, presets and specifications."""
 
 import dataclasses
+from fractions import Fraction
 from pathlib import Path
 
 import cv2
@@ -10,51 +11,28 @@ import pytest
 from pipeline.commands.grammar import build_parser
 from pipeline.options.build import build_job
 from pipeline.options.command_line import job_options, with_preset
-from pipeline.options.declared import NO_DEFAULT, declared_fields, declared_registry, own_first
 from pipeline.options.look import Look
 from pipeline.options.members import parse_member
-from pipeline.options.output import Output
 from pipeline.options.presets import read_preset, shipped_presets
-from pipeline.options.run import Run
-from pipeline.options.solve_options import SolveOptions
 from stages.flows import FLOWS
 from stages.flows.dis import Dis
 from stages.layouts import LAYOUTS
 from stages.layouts.importance import Importance
-from stages.media import EncodeOptions
-from stages.triangulate import TriangulateOptions
 from tests.jobs import changed, job_of
 from warp_kernels.errors import OptionError
 from warp_kernels.styles import STYLES
 
-REGISTRIES = {
-    "stages.layouts:LAYOUTS": LAYOUTS,
-    "stages.flows:FLOWS": FLOWS,
-    "warp_kernels.styles:STYLES": STYLES,
-}
 MEMBERS = [
     (flag, name, registry)
     for flag, registry in (("--layout", LAYOUTS), ("--flow", FLOWS), ("--style", STYLES))
     for name in registry
 ]
-NESTED = [
-    SolveOptions,
-    Look,
-    Output,
-    Run,
-    TriangulateOptions,
-    EncodeOptions,
-    *(
-        field.default_factory
-        for field in dataclasses.fields(TriangulateOptions)
-        if isinstance(field.default_factory, type)
-    ),
-]
 
 
 def parse(*options: str) -> dict:
     """Values that the command line gives."""
-    return vars(build_parser().parse_args(["animate", "in.mp4", "-o", "out.mp4", *options]))
+    line = ["animate", "in.mp4", "-o", "out.mp4", *options]
+    return {**vars(build_parser().parse_args(line)), "source": "in.mp4"}
 
 
 def write_preset(folder: Path, text: str) -> str:
@@ -62,41 +40,6 @@ def write_preset(folder: Path, text: str) -> str:
     path = folder / "my.toml"
     path.write_text(text, encoding="utf-8")
     return str(path)
-
-
-@pytest.mark.parametrize("cls", NESTED, ids=lambda cls: cls.__name__)
-def test_declarations_are_read_as_python_reads_them(cls: type) -> None:
-    """What is read from the source is what the imported dataclass has."""
-    read = declared_fields(cls.__module__, cls.__name__)
-    real = dataclasses.fields(cls)
-    assert [field.name for field in read] == [field.name for field in real]
-    for declared, field in zip(read, real, strict=True):
-        assert dict(declared.metadata) == dict(field.metadata)
-        if field.default is dataclasses.MISSING:
-            assert declared.default is NO_DEFAULT
-        else:
-            assert declared.default == field.default
-        if isinstance(field.default_factory, type):
-            assert declared.factory == field.default_factory.__name__
-
-
-@pytest.mark.parametrize("reference", REGISTRIES)
-def test_registries_are_read_as_python_reads_them(reference: str) -> None:
-    """The members' names and parameters."""
-    read = declared_registry(reference)
-    assert list(read) == list(REGISTRIES[reference])
-    for name, cls in REGISTRIES[reference].items():
-        assert [f.name for f in read[name]] == [f.name for f in own_first(cls)]
-
-
-def test_declaration_that_is_not_literal_is_imported(tmp_path: Path, monkeypatch) -> None:
-    """A computed default costs time, not truth."""
-    source = "from dataclasses import dataclass\n@dataclass\nclass A:\n    x: int = 2 ** 4\n"
-    (tmp_path / "computed.py").write_text(source)
-    monkeypatch.setattr("pipeline.options.declared.ROOT", tmp_path)
-    monkeypatch.syspath_prepend(tmp_path)
-    (field,) = declared_fields("computed", "A")
-    assert (field.name, field.kind, field.default) == ("x", "int", 16)
 
 
 def test_defaults_are_those_of_the_dataclasses() -> None:
@@ -143,9 +86,9 @@ def test_output_size(options: dict, size: tuple[int, int] | None) -> None:
     look = Look(**options)
     if size is None:
         with pytest.raises(OptionError, match=r"--scale .* of 640x361: sides must lie between"):
-            look.size_for((640, 361))
+            look.framing_for((640, 361), Fraction(1))
     else:
-        assert look.size_for((640, 361)) == size
+        assert look.framing_for((640, 361), Fraction(1)).canvas == size
 
 
 @pytest.mark.parametrize("name", shipped_presets())

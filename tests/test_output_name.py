@@ -1,6 +1,5 @@
 """Folders, pipes and times as users write them."""
 
-import io
 import os
 import subprocess
 import sys
@@ -94,16 +93,17 @@ def test_a_still_of_a_pipe_is_told_of(clip: Path) -> None:
     assert b"64x48 pixels" in done.stdout
 
 
-def test_pipes_that_cannot_be(clip: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_pipes_that_cannot_be(clip: Path) -> None:
     """Nothing comes in, rubbish comes in, standard output is needed twice."""
     assert piped(["info", "-"]).returncode == 3
     assert piped(["info", "-"], b"rubbish").returncode == 3
     twice = ["animate", str(clip), "-o", "-", "--progress", "json"]
     assert main(twice) == 2
-    terminal = io.StringIO()
-    monkeypatch.setattr(terminal, "isatty", lambda: True)
-    monkeypatch.setattr(sys, "stdin", terminal)
-    assert main(["info", "-"]) == 3
+    master, terminal = os.openpty()
+    command = [sys.executable, "-m", "pipeline.cli", "info", "-"]
+    assert subprocess.run(command, stdin=terminal, cwd=ROOT, timeout=60).returncode == 3
+    os.close(master)
+    os.close(terminal)
 
 
 @pytest.mark.parametrize(

@@ -5,6 +5,8 @@ import json
 import os
 import subprocess
 import sys
+from contextlib import redirect_stderr
+from itertools import pairwise
 from pathlib import Path
 
 import media_samples as samples
@@ -43,12 +45,12 @@ def run(name: str, *, total: int | None = 3, verbose: bool = False) -> None:
         progress.finish(SUMMARY)
 
 
-def test_auto_is_a_bar_only_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_auto_is_a_bar_only_on_a_terminal() -> None:
     """A log file gets lines."""
-    monkeypatch.setattr(sys, "stderr", Terminal())
-    assert type(open_progress("auto")) is BarProgress
-    monkeypatch.setattr(sys, "stderr", io.StringIO())
-    assert type(open_progress("auto")) is PlainProgress
+    with redirect_stderr(Terminal()):
+        assert type(open_progress("auto")) is BarProgress
+    with redirect_stderr(io.StringIO()):
+        assert type(open_progress("auto")) is PlainProgress
 
 
 @pytest.mark.parametrize("name", PROGRESS)
@@ -59,24 +61,24 @@ def test_every_member_survives_any_total(name: str, total: int | None, capsys) -
     assert "warning: breaks off" in capsys.readouterr().err
 
 
-def test_bar_shows_figures_and_leaves_the_summary(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_bar_shows_figures_and_leaves_the_summary() -> None:
     """Frames, triangles and rmse; the last line is the summary."""
-    monkeypatch.setattr(sys, "stderr", Terminal())
-    run("bar")
-    text = sys.stderr.getvalue()
+    with redirect_stderr(Terminal()) as terminal:
+        run("bar")
+    text = terminal.getvalue()
     assert "3/3" in text
     assert "703 triangles, rmse 23.00" in text
     assert text.rstrip().splitlines()[-1] == str(SUMMARY)
 
 
-def test_bar_is_closed_when_a_job_fails(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_bar_is_closed_when_a_job_fails() -> None:
     """The error line starts on a line of its own."""
-    monkeypatch.setattr(sys, "stderr", Terminal())
-    progress = open_progress("bar")
-    progress.frame(1, 9, 700, 20.0)
-    with pytest.raises(ValueError, match="full"), progress:
-        raise ValueError("disk full")
-    assert sys.stderr.getvalue().endswith("\n")
+    with redirect_stderr(Terminal()) as terminal:
+        progress = open_progress("bar")
+        progress.frame(1, 9, 700, 20.0)
+        with pytest.raises(ValueError, match="full"), progress:
+            raise ValueError("disk full")
+    assert terminal.getvalue().endswith("\n")
 
 
 def test_plain_lines_are_few_but_tell_the_last(capsys) -> None:
@@ -123,6 +125,74 @@ def test_summary_of_nothing_divides_by_nothing() -> None:
     """A job of no time has no frame rate."""
     assert Summary(1, 0.0, 0.0, Path("a.png")).fps == 0.0
     assert str(Summary(1, 1.0, 0.0, Path("a.png"))).startswith("1 frame in")
+
+
+def test_every_member_tells_of_kernels_as_it_tells_of_frames(
+    monkeypatch: pytest.MonkeyPatch, capsys
+) -> None:
+    """At once that there are some, then how far it is; nothing with `none`."""
+    for name in ("plain", "json", "none"):
+        progress = open_progress(name)
+        progress.kernels(0, None)
+        for done in range(4):
+            progress.kernels(done, 3)
+    told = capsys.readouterr()
+    plain = told.err.splitlines()
+    assert plain[0].startswith("first run: ")
+    assert plain[1:] == ["compiling kernels 0/3", "compiling kernels 3/3"]
+    events = [json.loads(line) for line in told.out.splitlines()]
+    assert [(e["done"], e["total"]) for e in events] == [(0, None), (0, 3), (1, 3), (2, 3), (3, 3)]
+    monkeypatch.setattr(sys, "stderr", Terminal())
+    bar = open_progress("bar")
+    bar.kernels(0, 3)
+    bar.kernels(2, 3)
+    bar.frame(1, 9, 700, 20.0)
+    bar.close()
+    assert "2/3" in sys.stderr.getvalue()
+    assert "1/9" in sys.stderr.getvalue()
+
+
+@pytest.mark.parametrize(
+    ("columns", "kind", "expected"),
+    [
+        (80, "xterm", "bar"),
+        (40, "xterm", "bar"),
+        (0, "xterm", "plain"),
+        (10, "xterm", "plain"),
+        (80, "dumb", "plain"),
+    ],
+)
+def test_a_bar_needs_room(columns: int, kind: str, expected: str) -> None:
+    """A terminal of no known size, a very narrow one and one that cannot go back get lines."""
+    pty, termios = pytest.importorskip("pty"), pytest.importorskip("termios")
+    ours, theirs = pty.openpty()
+    termios.tcsetwinsize(theirs, (24 if columns else 0, columns))
+    script = "from pipeline.progress import open_progress; print(type(open_progress('auto')))"
+    with open(theirs, "wb", buffering=0) as terminal:
+        done = subprocess.run(
+            [sys.executable, "-c", script],
+            stdout=subprocess.PIPE,
+            stderr=terminal,
+            text=True,
+            cwd=ROOT,
+            env={**os.environ, "TERM": kind},
+        )
+    os.close(ours)
+    assert PROGRESS[expected].__name__ in done.stdout
+
+
+def test_plain_lines_of_a_long_job_are_bounded(monkeypatch: pytest.MonkeyPatch, capsys) -> None:
+    """An hour is told in some hundred lines, and no minute goes by without one."""
+    now = [1000.0]
+    monkeypatch.setattr("time.perf_counter", lambda: now[0])
+    progress, told = open_progress("plain"), []
+    for done in range(1, 36001):
+        now[0] += 0.1
+        progress.frame(done, 36000, 700, 20.0)
+        if capsys.readouterr().err:
+            told.append(now[0])
+    assert len(told) < 150
+    assert max(after - before for before, after in pairwise(told)) < 61
 
 
 @pytest.mark.parametrize("how", ["json", "plain"])

@@ -1,4 +1,4 @@
-"""The examples of docs/python.md and of the README's section run as they stand."""
+"""The examples of docs/python.md and of the README's section run and leave nothing behind."""
 
 import re
 from pathlib import Path
@@ -31,3 +31,4 @@ def test_examples_run(page: str, tmp_path: Path, monkeypatch, capsys) -> None:
         promised = re.findall(r"print\(.*\)  # (.*)", block)
         printed = capsys.readouterr().out.splitlines()
         assert not set(promised) - set(printed)
+    assert {path.name for path in tmp_path.iterdir()} <= {"sample_videos", "out"}

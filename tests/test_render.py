@@ -5,22 +5,23 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from stages.edits import split_triangles
 from stages.layouts.grid import Grid
 from stages.mesh import Mesh, mesh_of
 from stages.render import Renderer
 from stages.snapshot import Snapshot
 from tests.kernel_samples import noise, random_mesh, snapshot_of, waves
+from warp_kernels.color_model import CONSTANT, LINEAR, QUADRATIC
 from warp_kernels.device.device import Device
-from warp_kernels.energy.color_model import CONSTANT, LINEAR, QUADRATIC
 from warp_kernels.errors import OptionError
-from warp_kernels.raster import MAX_SIDE
+from warp_kernels.limits import MAX_SIDE
 from warp_kernels.styles import STYLES, Style
 from warp_kernels.styles.edges import Edges
 from warp_kernels.styles.flat import Flat
 from warp_kernels.styles.gradient import Gradient
 
-SENTINEL = 7
-"""Held by the output before anything is drawn."""
+STALE = 7
+"""Colour of what was drawn before."""
 SIZES = [(61, 47), (30, 23), (122, 94), (97, 31), (1, 1), (3, 200), (701, 499)]
 """Of the source, half, double, not proportional, tiny, narrow, drawn in several bands [px]."""
 
@@ -32,14 +33,28 @@ def draw(
     size: tuple[int, int] | None = None,
     threads: int = 0,
 ) -> np.ndarray:
-    """Draw a snapshot over waves, on an output that held a sentinel, [H, W, 3 or 4] uint8."""
+    """Draw a snapshot over waves, on an output that held another one, [H, W, 3 or 4] uint8."""
     picture = (snapshot.mesh.width, snapshot.mesh.height)
     renderer = Renderer(Device(device, threads), picture, size or picture, styles)
-    renderer._canvas._pixels.fill_(SENTINEL)
-    # Sample grids start outside all triangles but inside the memory of their colours.
-    renderer._canvas._triangle_of.fill_(snapshot.mesh.triangle_count)
-    renderer._canvas._tables["colors"].fill_(SENTINEL)
+    renderer.render(_stale(snapshot), source=np.full_like(waves(*picture), STALE))
     return renderer.render(snapshot, source=waves(*picture))
+
+
+def _stale(snapshot: Snapshot) -> Snapshot:
+    """What nobody wants to see: more triangles than the next one has, all of one colour."""
+    mesh = snapshot.mesh
+    finer = split_triangles(mesh, np.flatnonzero(mesh.areas > 0.5 * mesh.areas.max()))
+    count = finer.triangle_count
+    stale = np.zeros((count, *snapshot.coefficients.shape[1:]))
+    stale[:, :, 0] = STALE
+    return replace(
+        snapshot,
+        mesh=finer,
+        coefficients=stale,
+        energies=np.zeros(count),
+        counts=np.ones(count, dtype=np.int64),
+        limits=None,
+    )
 
 
 def painted(mesh: Mesh, colors: np.ndarray) -> Snapshot:

@@ -7,22 +7,23 @@ import sqlite3
 import subprocess
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import closing
 from pathlib import Path
 
 import pytest
 
 from pipeline.cli import main
-from pipeline.loop.animate import animate
+from pipeline.loop.animate import animate, solve
 from pipeline.loop.plan import plan
-from pipeline.loop.processes import animate_in_parts, solve_in_parts
+from pipeline.loop.ranges import InThisProcess, Part, Work
+from pipeline.loop.result import Animated
 from pipeline.options.solve_options import SolveOptions
 from pipeline.progress import Progress
 from pipeline.track import TrackReader, join
 from stages.media import FrameRange
 from tests import media_samples as samples
-from tests.jobs import job_of
+from tests.jobs import changed, job_of
 from tests.tracks import COUNT, CUT, QUICK, QUICK_FLAGS, rows_of, solve_to, write_clip
 from warp_kernels.errors import OptionError
 
@@ -166,6 +167,7 @@ def test_track_of_an_earlier_program_goes_on(clip: Path, whole: Path, tmp_path: 
     with closing(sqlite3.connect(track)) as connection, connection:
         (text,) = connection.execute("SELECT value FROM header WHERE key = 'options'").fetchone()
         options = {**json.loads(text), **job, "class": "Job"}
+        options["layout"]["class"], options["flow"]["class"] = "Importance", "Dis"
         update = "UPDATE header SET value = ? WHERE key = 'options'"
         connection.execute(update, (json.dumps(options),))
     with pytest.raises(OptionError, match="--seed 1 instead of 0"):
@@ -224,9 +226,52 @@ def test_two_processes_are_one(clip: Path, whole: Path, tmp_path: Path) -> None:
     """Shots solved side by side; nothing is left beside the track."""
     track = tmp_path / "t.mtrk"
     job = job_of(clip, track=track, triangulate=QUICK, jobs=2, threads=1)
-    assert solve_in_parts(job.solve, job.output, job.run, Progress()).frames == COUNT
+    assert solve(job.solve, job.output, job.run, Progress()).frames == COUNT
     assert rows_of(track) == rows_of(whole)
     assert list(tmp_path.iterdir()) == [track]
+
+
+def test_one_after_the_other_is_one(clip: Path, whole: Path, tmp_path: Path) -> None:
+    """Who solves the ranges is the caller's choice; progress counts all of them together."""
+
+    class InTurn(InThisProcess):
+        """Looks for shots although it solves them one by one."""
+
+        places = 9
+
+    track, progress = tmp_path / "t.mtrk", Counting()
+    job = job_of(clip, track=track, triangulate=QUICK, threads=1)
+    done = solve(job.solve, job.output, job.run, progress, runner=InTurn())
+    assert done.frames == COUNT
+    assert any("2 shots" in note for note in done.notes)
+    assert progress.told == [(number, COUNT) for number in range(1, COUNT + 1)]
+    assert rows_of(track) == rows_of(whole)
+    assert list(tmp_path.iterdir()) == [track]
+
+
+def test_failed_range_is_tried_again(clip: Path, whole: Path, tmp_path: Path) -> None:
+    """What a runner loses half-way goes on from the track of its range, and so does the whole."""
+
+    class Failing(InThisProcess):
+        """Loses its second range after four frames."""
+
+        places = 2
+
+        def run(self, work: Work, parts: Sequence[Part], progress: Progress) -> Sequence[Animated]:
+            """Solve one range, then half of the other."""
+            super().run(work, parts[:1], progress)
+            return super().run(work, parts[1:], Interrupting(4))
+
+    track, progress = tmp_path / "t.mtrk", Counting()
+    job = job_of(clip, track=track, triangulate=QUICK, threads=1)
+    with pytest.raises(KeyboardInterrupt):
+        solve(job.solve, job.output, job.run, Progress(), runner=Failing())
+    assert len(list(track.with_name("t.mtrk.parts").glob("*.mtrk"))) == 2
+    again = changed(job, resume=True, jobs=2)
+    solve(again.solve, again.output, again.run, progress)
+    assert rows_of(track) == rows_of(whole)
+    assert CUT < progress.told[0][0] <= CUT + 5
+    assert progress.told[-1] == (COUNT, COUNT)
 
 
 def children_of(process: int) -> set[int]:
@@ -284,7 +329,7 @@ def test_processes_have_one_progress(clip: Path, tmp_path: Path) -> None:
     """It counts to the end once, in order, though frames are solved and then drawn."""
     progress = Counting()
     job = job_of(clip, tmp_path / "o.mkv", triangulate=QUICK, jobs=2, threads=1)
-    animate_in_parts(job, progress)
+    animate(job, progress)
     assert progress.told == [(done, COUNT) for done in range(1, COUNT + 1)]
 
 

@@ -28,23 +28,26 @@ from stages.snapshot import Snapshot
 from stages.solve.color_limits import SLACK
 from stages.solve.color_owners import color_owners
 from stages.spaces import SPACES
-from stages.topology import Goal
 from stages.topology.appraise import Appraiser
 from stages.topology.collapse_slivers import collapse_slivers
 from stages.topology.energy import Energy
 from stages.topology.followed_slivers import AFFORDED, sliver_changes
-from stages.topology.refine import RefineOptions
-from stages.triangulate import TriangulateOptions, Triangulator
+from stages.topology.goal import Goal
+from stages.topology.refine_options import RefineOptions
+from stages.triangulate import Triangulator
+from stages.triangulate_options import TriangulateOptions
 from stages.validate import assert_valid
 from tests.kernel_samples import frame_of, noise, poisoned_workspace, random_mesh, waves
 from tests.meshes import scrambled
 from tests.oracles.coverage import covered_pixels, rounded
 from tests.tracks import solve_to, write_clip
+from warp_kernels.color_model import COLOR_MODELS, CONSTANT, ColorModel
 from warp_kernels.device.device import Device
 from warp_kernels.energy.color_extremes import Extremes
-from warp_kernels.energy.color_model import COLOR_MODELS, CONSTANT, ColorModel
 from warp_kernels.energy.nearby_colors import LEEWAY
-from warp_kernels.styles import STYLES, Flat, Gradient, Style
+from warp_kernels.styles import STYLES, Style
+from warp_kernels.styles.flat import Flat
+from warp_kernels.styles.gradient import Gradient
 
 WIDTH, HEIGHT = 16, 12
 NEEDLES = (2, 3)

@@ -18,10 +18,10 @@ from tests.kernel_samples import (
 from tests.oracles.coverage import Pixel, covered_pixels, rounded
 from tests.oracles.fit import best_fit, exact_energy, is_singular
 from tests.oracles.variants import variants
+from warp_kernels.color_model import COLOR_MODELS, CONSTANT, LINEAR, QUADRATIC, ColorModel
 from warp_kernels.device.device import Device
-from warp_kernels.energy.color_model import COLOR_MODELS, CONSTANT, LINEAR, QUADRATIC, ColorModel
 from warp_kernels.energy.fit import READABLE
-from warp_kernels.raster import MAX_SIDE
+from warp_kernels.limits import MAX_SIDE
 
 ENERGY_TOLERANCE = 1e-5
 """Error allowed in an energy [code value^2 px]: rounding of the difference of two sums of about

@@ -9,8 +9,9 @@ import pytest
 from stages.layouts import LAYOUTS
 from stages.snapshot import Snapshot
 from stages.spaces import SPACES
-from stages.topology.refine import RefineOptions
-from stages.triangulate import TriangulateOptions, Triangulator
+from stages.topology.refine_options import RefineOptions
+from stages.triangulate import Triangulator
+from stages.triangulate_options import TriangulateOptions
 from stages.validate import assert_valid
 from tests.kernel_samples import frame_of, noise, waves
 from tests.oracles.coverage import covered_pixels, rounded

@@ -9,11 +9,12 @@ from stages.layouts.importance import Importance
 from stages.motion.advect import Carried
 from stages.snapshot import Snapshot
 from stages.solve.steady_colors import ALLOWANCE, steadied
-from stages.topology.refine import RefineOptions
-from stages.triangulate import TriangulateOptions, Triangulator
+from stages.topology.refine_options import RefineOptions
+from stages.triangulate import Triangulator
+from stages.triangulate_options import TriangulateOptions
 from tests.kernel_samples import frame_of, random_mesh, snapshot_of, waves
+from warp_kernels.color_model import COLOR_MODELS
 from warp_kernels.device.device import Device
-from warp_kernels.energy.color_model import COLOR_MODELS
 
 SIZE = 64
 

@@ -2,14 +2,14 @@
 
 import dataclasses
 import json
+from functools import partial
 from pathlib import Path
 
 import cv2
 import numpy as np
-import pytest
 
 from pipeline.cli import main
-from pipeline.commands import style_sheet
+from pipeline.commands.style_sheet import COLUMNS, OVER, WIDTH, draw_sheet
 from pipeline.options.members import parse_member
 from stages.look.sheet import CAPTION, GAP, sheet_of
 from tests.golden_images import write_png
@@ -39,23 +39,23 @@ def test_every_style_has_a_portrait_that_can_be_drawn() -> None:
     """Stacks of registered styles, the style itself among them."""
     for name, style in STYLES.items():
         for stack in style.portraits or (name,):
-            specs = stack.split(style_sheet.OVER)
+            specs = stack.split(OVER)
             assert style in [type(parse_member("--style", spec, STYLES)) for spec in specs]
 
 
-def test_sheet_is_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys) -> None:
+def test_sheet_is_written(tmp_path: Path, capsys) -> None:
     """One cell a portrait; an existing sheet is not replaced unless that is wanted."""
-    monkeypatch.setattr(style_sheet, "STYLES", {k: STYLES[k] for k in ("circles", "flat", "paper")})
     picture, sheet = tmp_path / "in.png", tmp_path / "sheet.png"
     write_png(picture, waves(48, 32))
-    command = ["styles", str(picture), "--sheet", str(sheet), "--triangles", "30"]
-    assert main(command) == 0
-    height = round(style_sheet.WIDTH * 32 / 48)
-    columns = style_sheet.COLUMNS * (style_sheet.WIDTH + GAP) + GAP
+    few = partial(draw_sheet, str(picture), str(sheet), triangles=30)
+    few(names=("circles", "flat", "paper"))
+    height = round(WIDTH * 32 / 48)
+    columns = COLUMNS * (WIDTH + GAP) + GAP
     assert cv2.imread(str(sheet)).shape == (GAP + height + CAPTION + GAP, columns, 3)
-    assert main(command) == 4
+    assert main(["styles", str(picture), "--sheet", str(sheet)]) == 4
     assert "exists already" in capsys.readouterr().err
-    assert main([*command, "--overwrite"]) == 0
+    few(names=("flat",), overwrite=True)
+    assert cv2.imread(str(sheet)).shape == (GAP + height + CAPTION + GAP, columns, 3)
 
 
 def test_captions_stay_below_their_picture() -> None:

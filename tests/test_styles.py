@@ -15,8 +15,8 @@ from stages.validate import assert_valid
 from tests.golden_images import write_png
 from tests.kernel_samples import random_mesh, waves
 from tests.snapshots import snapshot_with
+from warp_kernels.color_model import LINEAR
 from warp_kernels.device.device import Device
-from warp_kernels.energy.color_model import LINEAR
 from warp_kernels.errors import OptionError
 from warp_kernels.styles import STYLES, Style
 from warp_kernels.styles.color import parse_color

@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from warp_kernels.scene.texels import Texture
+from warp_kernels.scene.texels import Texels
 
 
 @pytest.mark.parametrize("repeats", [False, True])
 def test_texels_know_their_neighbours(repeats: bool) -> None:
     """A tile goes on at its other side, another picture's border goes on for ever."""
-    texture = Texture.of(np.random.default_rng(0).random((2, 6, 8)))
+    texture = Texels.of(np.random.default_rng(0).random((2, 6, 8)))
     for plain, packed in zip(
         texture.levels, texture.with_neighbours(repeats=repeats).levels, strict=True
     ):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from warp_kernels.scene.texels import Texture
+from warp_kernels.scene.texels import Texels
 from warp_kernels.styles.tones.tonal_art_map import (
     TONE_STEP,
     TONES,
@@ -33,7 +33,7 @@ def test_every_level_of_detail_has_the_nominal_tones(tones: np.ndarray) -> None:
     """Scale does not change tone: not by 2 % of the brightness, nor by 2 % of the ink."""
     assert len(tones) == TONES >= 6
     ink = TONE_STEP * np.arange(TONES)
-    for level in Texture.of(tones).levels:
+    for level in Texels.of(tones).levels:
         brightness = level.mean(axis=(1, 2)) / 255.0
         np.testing.assert_allclose(brightness, 1.0 - ink, rtol=TONE_TOLERANCE)
         np.testing.assert_allclose(1.0 - brightness, ink, rtol=TONE_TOLERANCE)
@@ -41,7 +41,7 @@ def test_every_level_of_detail_has_the_nominal_tones(tones: np.ndarray) -> None:
 
 def test_darker_tones_hold_the_strokes_of_lighter_ones(tones: np.ndarray) -> None:
     """No texel of any level of detail gets brighter from one tone to the next."""
-    for level in Texture.of(tones).levels:
+    for level in Texels.of(tones).levels:
         assert (level[1:] <= level[:-1]).all()
     assert (tones[0] == 1.0).all()
 

@@ -11,9 +11,10 @@ from test_legalise import assert_delaunay
 from stages.edits import collapse_edges, collapsible, flip_edges, flippable, split_edges
 from stages.mesh import Mesh, heights_of, next_corner, previous_corner
 from stages.motion.correspondence import kept_triangles
-from stages.topology import TOPOLOGIES, Goal
+from stages.topology import TOPOLOGIES
 from stages.topology.appraise import Appraiser
 from stages.topology.energy import Energy
+from stages.topology.goal import Goal
 from stages.topology.ranking import LEAST_GAIN
 from stages.validate import assert_valid
 from tests.kernel_samples import (
@@ -23,8 +24,8 @@ from tests.kernel_samples import (
     random_weights,
     waves,
 )
+from warp_kernels.color_model import COLOR_MODELS, LINEAR, ColorModel
 from warp_kernels.device.device import Device
-from warp_kernels.energy.color_model import COLOR_MODELS, LINEAR, ColorModel
 from warp_kernels.energy.topology_gains import IMPOSSIBLE, SPLIT_PLACES
 
 WIDTH, HEIGHT = 61, 47

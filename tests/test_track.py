@@ -312,7 +312,7 @@ def test_other_options_are_no_resumption(
 def test_track_of_a_program_that_knew_less_goes_on(copy: Path) -> None:
     """What it could not say of focus and of reading is what it did: nothing special."""
     with TrackReader(copy) as track:
-        wanted = {**track.header.options, "focus": [{"class": "NoFocus"}]}
+        wanted = {**track.header.options, "focus": [{"class": "none"}]}
     known = {name: value for name, value in wanted.items() if name not in ("focus", "read")}
     with closing(sqlite3.connect(copy)) as connection:
         statement = "UPDATE header SET value = ? WHERE key = 'options'"

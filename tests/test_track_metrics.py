@@ -27,20 +27,20 @@ from stages.edits import (
 from stages.flows.field import FlowField
 from stages.media import FrameRange
 from stages.mesh import Mesh, areas_of
-from stages.metrics import Motion, drift, jitter, mesh_changes, pop_energy
+from stages.metrics import SourceMotion, drift, jitter, mesh_changes, pop_energy
 from stages.metrics.locate import locate
 from stages.snapshot import Snapshot
 from tests import media_samples as samples
 from tests.jobs import job_of
 from tests.tracks import CUT, QUICK, write_clip
-from warp_kernels.energy.color_model import CONSTANT, LINEAR, ColorModel
+from warp_kernels.color_model import CONSTANT, LINEAR, ColorModel
 
 TRACK_KEYS = {"births", "deaths", "flips", "jitter", "pop_energy", "inverted"}
 
 
-def still(mesh: Mesh) -> Motion:
+def still(mesh: Mesh) -> SourceMotion:
     """No motion over a mesh's domain."""
-    return Motion(*2 * (FlowField.still(mesh.width, mesh.height),))
+    return SourceMotion(*2 * (FlowField.still(mesh.width, mesh.height),))
 
 
 def painted(mesh: Mesh, grays: object, model: ColorModel = CONSTANT) -> Snapshot:
@@ -154,7 +154,7 @@ def test_pop_energy_follows_the_motion() -> None:
     moved = after.vertices[after.triangles, 0].mean(axis=1)
     one, other = painted(mesh, 200 * (bright > 20)), painted(after, 200 * (moved > 60))
     vectors = np.full((1, 1, 2), (40, 0), np.float32)
-    motion = Motion(*(FlowField(WIDTH, HEIGHT, sign * vectors) for sign in (1, -1)))
+    motion = SourceMotion(*(FlowField(WIDTH, HEIGHT, sign * vectors) for sign in (1, -1)))
     assert pop_energy(one, other, motion) < 0.3 * pop_energy(one, other, still(mesh))
 
 

@@ -11,12 +11,13 @@ from stages.motion.advect import Carried
 from stages.snapshot import Snapshot
 from stages.solve.convergence import Convergence
 from stages.topology import TOPOLOGIES
-from stages.topology.refine import RefineOptions
-from stages.triangulate import TriangulateOptions, Triangulator
+from stages.topology.refine_options import RefineOptions
+from stages.triangulate import Triangulator
+from stages.triangulate_options import TriangulateOptions
 from stages.validate import assert_valid
 from tests.kernel_samples import frame_of, noise, waves
+from warp_kernels.color_model import COLOR_MODELS, LINEAR
 from warp_kernels.device.device import Device
-from warp_kernels.energy.color_model import COLOR_MODELS, LINEAR
 from warp_kernels.errors import OptionError
 
 WIDTH, HEIGHT = 151, 113

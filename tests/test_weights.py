@@ -8,49 +8,23 @@ import numpy as np
 import pytest
 from scipy.ndimage import gaussian_filter
 
-import stages.triangulate
 from pipeline.cli import main
 from pipeline.loop.animate import animate
 from pipeline.progress import Progress
+from stages.focus.none import NoFocus
 from stages.frame import Frame
 from stages.masks.weight_maps import WeightMap
 from stages.media import FrameRange, open_decoder
-from stages.topology.refine import RefineOptions
-from stages.triangulate import TriangulateOptions
+from stages.topology.refine_options import RefineOptions
+from stages.triangulate_options import TriangulateOptions
 from tests import media_samples as samples
 from tests.jobs import job_of
 from tests.kernel_samples import frame_of
-from warp_kernels.energy.workspace import Workspace
 from warp_kernels.errors import MediaError
 from warp_kernels.styles import STYLES
 
 SIZE = (48, 32)
 QUICK = TriangulateOptions(iterations=16, frame_iterations=2, refine=RefineOptions(triangles=40))
-
-
-class RecordingWorkspace(Workspace):
-    """Takes weights, keeps them and sums without them."""
-
-    made: list["RecordingWorkspace"]
-
-    def __init__(self, device, size, model, sums="edges", weighted=False) -> None:
-        super().__init__(device, size, model, sums)
-        self.weighted, self.loaded = weighted, []
-        self.made.append(self)
-
-    def load_image(self, pixels: np.ndarray, weights: np.ndarray | None = None) -> None:
-        """Keep the weights."""
-        self.loaded.append(weights)
-        super().load_image(pixels)
-
-
-@pytest.fixture
-def workspaces(monkeypatch) -> list[RecordingWorkspace]:
-    """The workspaces that a test makes."""
-    made: list[RecordingWorkspace] = []
-    kept = type("Kept", (RecordingWorkspace,), {"made": made})
-    monkeypatch.setattr(stages.triangulate, "Workspace", kept)
-    return made
 
 
 def level(value: int, size: tuple[int, int] = SIZE) -> np.ndarray:
@@ -239,7 +213,7 @@ def test_stills_that_begin_late_or_lack_one(tmp_path: Path) -> None:
     ],
 )
 def test_mistakes_are_one_line(
-    weights: str, word: str, workspaces, tmp_path: Path, monkeypatch, capsys
+    weights: str, word: str, tmp_path: Path, monkeypatch, capsys
 ) -> None:
     """Exit code 3, and nothing written, even where the mistake comes late."""
     monkeypatch.chdir(tmp_path)
@@ -259,32 +233,31 @@ def test_mistakes_are_one_line(
     assert sorted(tmp_path.rglob("*")) == before
 
 
-def test_weights_go_where_vertices_move(workspaces, tmp_path: Path) -> None:
-    """Frame by frame to the workspace that is optimised; colours are fitted without them."""
-    source = samples.write_video(tmp_path / "in.mp4", [samples.picture(*SIZE, n) for n in range(6)])
-    job = job_of(
-        source,
-        tmp_path / "out.mp4",
-        frame_range=FrameRange(1, 5, 2),
-        triangulate=QUICK,
-        styles=(STYLES["gradient"](),),
-        weights=str(write_stills(tmp_path, range(6))),
-    )
+def test_every_frame_has_the_weights_of_its_number(tmp_path: Path) -> None:
+    """The half that is white in its own map gains, whatever the maps of others say."""
+    picture = texture()
+    source = samples.write_video(tmp_path / "in.mkv", [picture] * 6, codec="ffv1")
+    for number in range(6):
+        half = np.full_like(picture, 1)
+        half[:, 80 * (number in (3, 4)) :][:, :80] = 255
+        samples.write_still(tmp_path / f"w_{number:02d}.png", half)
+    wanted = TriangulateOptions(iterations=60, refine=RefineOptions(triangles=120))
+    options = {"triangulate": wanted, "weights": str(tmp_path / "w_##.png"), "independent": True}
+    job = job_of(source, tmp_path / "out_##.png", frame_range=FrameRange(1, 5, 2), **options)
     assert animate(job, Progress()).frames == 3
-    even, fitting, weighted = workspaces
-    assert [w.weighted for w in workspaces] == [False, False, True]
-    assert even.loaded == [None, None, None]
-    assert set(fitting.loaded) == {None}
-    assert [int(weights[0, 0]) for weights in weighted.loaded] == [11, 31, 51]
+    for number in (1, 3, 5):
+        left, right = halves_rmse(picture, tmp_path / f"out_{number:02d}.png")
+        white, black = (right, left) if number == 3 else (left, right)
+        assert white < 0.8 * black
 
 
-def test_no_map_asks_for_no_weights(workspaces, tmp_path: Path) -> None:
-    """Without the option, and without a face, everything is as it was."""
+def test_no_map_asks_for_no_weights(tmp_path: Path) -> None:
+    """Without the option, and without a face, everything is as if nothing counted more."""
     source = samples.write_still(tmp_path / "in.png", samples.picture(*SIZE))
-    animate(job_of(source, tmp_path / "out.png", triangulate=QUICK), Progress())
-    (workspace,) = workspaces
-    assert not workspace.weighted
-    assert workspace.loaded == [None]
+    for name, focus in (("auto", ()), ("none", (NoFocus(),))):
+        job = job_of(source, tmp_path / f"{name}.png", triangulate=QUICK, focus=focus)
+        animate(job, Progress())
+    assert (tmp_path / "auto.png").read_bytes() == (tmp_path / "none.png").read_bytes()
 
 
 def test_told_error_is_that_of_all_pixels(tmp_path: Path) -> None:

@@ -5,12 +5,13 @@ from contextlib import closing
 from pathlib import Path
 from typing import Any
 
-from pipeline.loop.animate import Animated, solve
+from pipeline.loop.animate import solve
+from pipeline.loop.result import Animated
 from pipeline.progress import Progress
 from pipeline.track.schema import TABLES
 from stages.media import FrameRange
-from stages.topology.refine import RefineOptions
-from stages.triangulate import TriangulateOptions
+from stages.topology.refine_options import RefineOptions
+from stages.triangulate_options import TriangulateOptions
 from tests import media_samples as samples
 from tests.jobs import job_of
 

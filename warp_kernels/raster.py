@@ -9,13 +9,13 @@ depends on nothing but the mesh.
 
 import warp as wp
 
+from warp_kernels.limits import MAX_SIDE
+
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 
 SUBPIXELS = 256
 """Fixed-point units per pixel."""
 HALF = 128
-MAX_SIDE = 8192
-"""Largest width or height [px]: keeps an edge's remainder below 2^30 and prefix sums in int32."""
 
 _UNIT = wp.constant(SUBPIXELS)
 _HALF = wp.constant(HALF)

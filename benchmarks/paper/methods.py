@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass, field, replace
 
-from stages.optimize import OptimizeOptions
-from stages.topology.refine import RefineOptions
-from stages.triangulate import TriangulateOptions
+from stages.optimize_options import OptimizeOptions
+from stages.topology.refine_options import RefineOptions
+from stages.triangulate_options import TriangulateOptions
 
 PAPER_ITERATIONS = 600
 """400 with refinement and 200 without, Sec. 6.4."""

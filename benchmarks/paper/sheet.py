@@ -101,12 +101,13 @@ def _at_cell_width(pixels: np.ndarray) -> np.ndarray:
     return cv2.resize(pixels, size, interpolation=cv2.INTER_AREA if shrinks else cv2.INTER_NEAREST)
 
 
-def save_small(path: Path, pixels: np.ndarray) -> None:
+def save_small(path: Path, pixels: np.ndarray, largest: int = LARGEST) -> None:
     """Write a PNG of few enough colours, then of few enough pixels, to be small.
 
     Args:
         path: The file.
         pixels: The picture, [H, W, 3] uint8.
+        largest: No file is larger [bytes].
     """
     path.parent.mkdir(parents=True, exist_ok=True)
     image = Image.fromarray(pixels)
@@ -115,7 +116,7 @@ def save_small(path: Path, pixels: np.ndarray) -> None:
             data = io.BytesIO()
             few = image.quantize(colors, dither=Image.Dither.NONE)
             few.save(data, format="PNG", optimize=True)
-            if data.tell() <= LARGEST:
+            if data.tell() <= largest:
                 path.write_bytes(data.getvalue())
                 return
         image = image.resize((image.width * 4 // 5, image.height * 4 // 5))

@@ -16,8 +16,8 @@ from stages.mesh import Mesh
 from stages.optimize import load_mesh
 from stages.snapshot import Snapshot
 from stages.triangulate import Triangulator
+from warp_kernels.color_model import COLOR_MODELS
 from warp_kernels.device.device import Device
-from warp_kernels.energy.color_model import COLOR_MODELS
 from warp_kernels.energy.workspace import Workspace
 
 TIME_BASE = Fraction(1, 25)

@@ -8,7 +8,7 @@ from unittest.mock import patch
 
 import numpy as np
 
-from warp_kernels.energy.color_model import CHANNELS
+from warp_kernels.color_model import CHANNELS
 from warp_kernels.energy.workspace import Workspace
 
 

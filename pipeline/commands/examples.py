@@ -40,6 +40,11 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
         "styles hatching",
         "styles photo.jpg --sheet sheet.png",
     ),
+    "completion": (
+        "completion bash > ~/.local/share/bash-completion/completions/trimotion",
+        "completion zsh > ~/.zfunc/_trimotion",
+        "completion fish > ~/.config/fish/completions/trimotion.fish",
+    ),
     "help": ("help", "help render"),
 }
 """Of every command."""

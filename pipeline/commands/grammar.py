@@ -11,12 +11,11 @@ from pipeline.commands.examples import ABOUT_ALL, EXAMPLES, shown
 from pipeline.options.command_line import (
     COMMAND_OPTIONS,
     add_job_options,
-    add_range_options,
     commands_with,
     registry_help,
 )
-from pipeline.options.flags import text_value, whole_number
 from pipeline.options.nearest import nearest
+from pipeline.options.values import text_value, whole_number
 from pipeline.progress import CHOICES
 
 ABOUT = "Turn videos into coherent triangulated animations."
@@ -31,6 +30,7 @@ commands:
   info FILE                  what a file is: a source or a mesh track
   measure SOURCE OUTPUT      how close an output is to its source, and how coherent
   styles [NAME]              all styles and their parameters, or one; --sheet draws them
+  completion bash|zsh|fish   a script by which a shell completes all of this
   help [COMMAND]             this text, or the options of a command
 
 trimotion COMMAND --help tells the options of a command, too.
@@ -42,6 +42,9 @@ trimotion styles lists every style with its parameters, trimotion styles NAME th
 
 """
 
+
+SEVERAL = ("animate", "solve", "render")
+"""Commands that take several inputs."""
 
 _CHOICE = re.compile(r"argument COMMAND: invalid choice: '(.*)' \(choose from ")
 
@@ -106,6 +109,7 @@ def build_parser() -> OneLineParser:
     _add_info(commands)
     _add_measure(commands)
     _add_styles(commands)
+    _add_completion(commands)
     _add_help(commands)
     return parser
 
@@ -114,11 +118,13 @@ def _add_animate(commands: Any) -> None:
     parser = _command(
         commands,
         "animate",
-        "Convert a video, a still or numbered stills (shot_####.png) into triangles.",
-        "trimotion animate INPUT -o OUTPUT [options]",
+        "Convert a video, a still or numbered stills (shot_####.png) into triangles; several of "
+        "them, or what a folder holds, into a folder.",
+        "trimotion animate INPUT -o OUTPUT [options]\n"
+        "       trimotion animate INPUT ... -o FOLDER/ [options]",
         registry_help() + "\n\n" + WHERE_PARAMETERS,
     )
-    parser.add_argument("source", metavar="INPUT", type=text_value, help="what FFmpeg reads")
+    _add_inputs(parser, "INPUT", "what FFmpeg reads, or a folder of it")
     _add_output(
         parser, "OUTPUT", "mp4, mov, mkv, webm, gif, a still, or stills such as shot_####.png"
     )
@@ -131,9 +137,10 @@ def _add_solve(commands: Any) -> None:
         commands,
         "solve",
         "Convert a source to a mesh track. A run that is killed goes on with --resume.",
-        "trimotion solve INPUT -o JOB.mtrk [options]",
+        "trimotion solve INPUT -o JOB.mtrk [options]\n"
+        "       trimotion solve INPUT ... -o FOLDER/ [options]",
     )
-    parser.add_argument("source", metavar="INPUT", type=text_value, help="what FFmpeg reads")
+    _add_inputs(parser, "INPUT", "what FFmpeg reads, or a folder of it")
     _add_output(parser, "JOB.mtrk", "the mesh track")
     add_job_options(parser, COMMAND_OPTIONS["solve"])
     _add_messages(parser)
@@ -144,10 +151,11 @@ def _add_render(commands: Any) -> None:
         commands,
         "render",
         "Draw a mesh track, or a part of it, in any style and size.",
-        "trimotion render JOB.mtrk -o OUTPUT [options]",
+        "trimotion render JOB.mtrk -o OUTPUT [options]\n"
+        "       trimotion render JOB.mtrk ... -o FOLDER/ [options]",
         WHERE_PARAMETERS,
     )
-    parser.add_argument("track", metavar="JOB.mtrk", type=text_value, help="a mesh track")
+    _add_inputs(parser, "JOB.mtrk", "a mesh track, or a folder of them")
     _add_output(parser, "OUTPUT", "what animate writes")
     parser.add_argument(
         "--source", metavar="INPUT", type=text_value, help="where the source is now"
@@ -184,6 +192,10 @@ def _add_join(commands: Any) -> None:
     _add_output(parser, "OUT.mtrk", "the joined track")
     parser.add_argument("--overwrite", action="store_true", help="replace an existing track")
     parser.add_argument("-q", "--quiet", action="store_true", help="tell errors only")
+
+
+def _add_inputs(parser: argparse.ArgumentParser, metavar: str, text: str) -> None:
+    parser.add_argument("inputs", metavar=metavar, nargs="+", type=text_value, help=text)
 
 
 def _add_output(parser: argparse.ArgumentParser, metavar: str, text: str) -> None:
@@ -251,7 +263,7 @@ def _add_measure(commands: Any) -> None:
         help="what the output was drawn from; its frames are compared if no range is given",
     )
     parser.add_argument("--json", action="store_true", help="print JSON, with every frame")
-    add_range_options(parser)
+    add_job_options(parser, COMMAND_OPTIONS["measure"])
     _add_telling(parser.add_argument_group("messages"))
 
 
@@ -278,6 +290,18 @@ def _add_styles(commands: Any) -> None:
     )
     parser.add_argument("--overwrite", action="store_true", help="replace an existing sheet")
     parser.add_argument("--json", action="store_true", help="print JSON")
+
+
+def _add_completion(commands: Any) -> None:
+    parser = _command(
+        commands,
+        "completion",
+        "Print a script by which a shell completes commands, options, values and files.",
+        "trimotion completion bash|zsh|fish",
+    )
+    parser.add_argument(
+        "shell", metavar="bash|zsh|fish", choices=("bash", "zsh", "fish"), help="the shell"
+    )
 
 
 def _add_help(commands: Any) -> None:
@@ -323,7 +347,8 @@ def _unknown(arguments: Sequence[str], known: Sequence[str], command: str) -> st
     """What to say about arguments that no option takes."""
     first = arguments[0].split("=")[0]
     if not first.startswith("-"):
-        return f"{arguments[0]!r}: unknown argument"
+        apart = "; several inputs stand side by side" if command in SEVERAL else ""
+        return f"{arguments[0]!r}: unknown argument{apart}"
     owners = commands_with(first.lstrip("-"))
     if owners:
         some = ", ".join(owners[:-1])

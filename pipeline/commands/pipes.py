@@ -11,12 +11,12 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from pipeline.commands.inputs import PIPE, is_pipe
+from pipeline.options.output_name import is_still
 from warp_kernels.errors import MediaError, OptionError
 
-PIPE = "-"
-"""How a user names a pipe; `-.gif` and the like choose the format of an output."""
 FORMATS = {"solve": ".mtrk", "join": ".mtrk"}
-"""Ending of an output whose name does not say, by the command; Matroska for the others."""
+"""Ending of an output whose name does not say, by the command; PNG or Matroska for the others."""
 _MADE = "standard output"
 
 
@@ -34,7 +34,7 @@ def piped(arguments: argparse.Namespace) -> Iterator[None]:
     given = vars(arguments)
     inputs = [key for key in ("source", "file") if given.get(key) == PIPE]
     output = given.get("output") or ""
-    writes = output == PIPE or (output.startswith("-.") and "/" not in output)
+    writes = is_pipe(output) and arguments.command != "measure"
     if not inputs and not writes:
         yield
         return
@@ -43,15 +43,15 @@ def piped(arguments: argparse.Namespace) -> Iterator[None]:
     with tempfile.TemporaryDirectory(prefix="trimotion-") as folder:
         for key in inputs:
             setattr(arguments, key, str(_received(Path(folder) / "standard input")))
-        ending = output[1:] or FORMATS.get(arguments.command, ".mkv")
-        made = Path(folder) / f"{_MADE}{ending}"
-        if writes:
-            arguments.output = str(made)
+        if not writes:
+            yield
+            return
+        made = Path(folder) / f"{_MADE}{output[1:] or _ending_for(arguments)}"
+        arguments.output = str(made)
         yield
-        if writes:
-            with made.open("rb") as file:
-                shutil.copyfileobj(file, sys.stdout.buffer)
-            sys.stdout.buffer.flush()
+        with made.open("rb") as file:
+            shutil.copyfileobj(file, sys.stdout.buffer)
+        sys.stdout.buffer.flush()
 
 
 def shown_name(path: Path) -> Path:
@@ -61,6 +61,17 @@ def shown_name(path: Path) -> Path:
         path: The file that is written.
     """
     return Path(PIPE) if path.stem == _MADE else path
+
+
+def _ending_for(arguments: argparse.Namespace) -> str:
+    """The format that suits what is written, where the user does not say it: a still is PNG."""
+    if arguments.command in FORMATS:
+        return FORMATS[arguments.command]
+    if arguments.command != "render":
+        return ".png" if is_still(Path(arguments.source)) else ".mkv"
+    from pipeline.track.kind import is_of_a_still
+
+    return ".png" if is_of_a_still(Path(arguments.track)) else ".mkv"
 
 
 def _received(path: Path) -> Path:

@@ -1,21 +1,19 @@
-"""The registry of styles, as people and programs read it."""
+"""Styles, and what installed packages add to all registries, as people and programs read them."""
 
+import inspect
 import json
 from collections.abc import Iterable, Iterator
+from dataclasses import MISSING, Field
 from pathlib import Path
+from typing import Any
 
-from pipeline.options.declared import (
-    NO_DEFAULT,
-    DeclaredField,
-    declared_registry,
-    declared_summary,
-    registry_classes,
-)
+from pipeline.options.command_line import job_options
+from pipeline.options.members import parameters
 from pipeline.options.nearest import nearest
 from warp_kernels.errors import OptionError
+from warp_kernels.registry import Registry
+from warp_kernels.styles import STYLES, Style
 
-REGISTRY = "warp_kernels.styles:STYLES"
-"""Where styles are registered."""
 SHARED = ("opacity", "blend")
 """Parameters of every style, listed once."""
 
@@ -23,36 +21,61 @@ SHARED = ("opacity", "blend")
 def list_styles(only: str | None = None, *, as_json: bool) -> str:
     """What `--style` takes: every style with its parameters, defaults, units and ranges.
 
+    What installed packages add to other options follows the styles; a member that cannot be used is
+    told with the reason.
+
     Args:
         only: The style that is told of; None for all.
         as_json: Whether to give JSON rather than lines.
 
     Raises:
-        OptionError: If there is no such style.
+        OptionError: If there is no such style, or the one that is asked for cannot be used.
     """
-    module = REGISTRY.partition(":")[0]
-    members = declared_registry(REGISTRY)
     if only is not None:
-        _check(only, members)
-    wanted = {name: members[name] for name in members if only in (None, name)}
-    classes = registry_classes(REGISTRY)
-    summaries = {name: declared_summary(module, classes[name]) for name in wanted}
+        _check(only, STYLES)
+        STYLES[only]
+    wanted = [name for name in STYLES if only in (None, name)]
     if as_json:
-        facts = {
-            name: {"summary": summaries[name], "parameters": [_facts(p) for p in parameters]}
-            for name, parameters in wanted.items()
-        }
-        return json.dumps(facts, indent=2)
+        return json.dumps({name: _style_facts(name) for name in wanted}, indent=2)
     if only is not None:
-        rows = _rows(iter(wanted[only]))
-        return "\n".join([f"{only}  {summaries[only]}", *rows])
+        return "\n".join(_member(STYLES, only))
     lines = ["--style NAME, or NAME:PARAMETER=VALUE,...; repeat it to lay one over the other", ""]
-    for name, parameters in wanted.items():
-        lines.append(f"{name}  {summaries[name]}")
-        lines += _rows(p for p in parameters if p.name not in SHARED)
+    for name in wanted:
+        lines += _member(STYLES, name, without=SHARED)
     lines.append("every style")
-    lines += _rows(p for p in next(iter(members.values())) if p.name in SHARED)
+    lines += _rows(p for p in parameters(Style) if p.name in SHARED)
+    for option in job_options():
+        registry = option.registry
+        if registry is not None and registry is not STYLES and registry.added:
+            lines += ["", f"--{option.flag}, from installed packages"]
+            for name in registry.added:
+                lines += _member(registry, name)
     return "\n".join(lines)
+
+
+def _member(registry: Registry[Any], name: str, without: tuple[str, ...] = ()) -> list[str]:
+    """A member and its parameters, or why it cannot be used."""
+    try:
+        cls = registry[name]
+    except OptionError as error:
+        return [f"{name}  cannot be used: {error}"]
+    origin = f" [{registry.origin(name)}]" if name in registry.added else ""
+    rows = _rows(p for p in parameters(cls) if p.name not in without)
+    return [f"{name}  {_summary(cls)}{origin}", *rows]
+
+
+def _style_facts(name: str) -> dict[str, object]:
+    """A style for programs."""
+    try:
+        cls = STYLES[name]
+    except OptionError as error:
+        return {"error": str(error)}
+    return {"summary": _summary(cls), "parameters": [_facts(p) for p in parameters(cls)]}
+
+
+def _summary(cls: type) -> str:
+    """First line of what a class says about itself."""
+    return (inspect.getdoc(cls) or "").split("\n", maxsplit=1)[0]
 
 
 def _check(name: str, members: Iterable[str]) -> None:
@@ -66,22 +89,22 @@ def _check(name: str, members: Iterable[str]) -> None:
     raise OptionError(f"styles {name}: no such style; {nearest(name, members)}")
 
 
-def _rows(parameters: Iterator[DeclaredField]) -> list[str]:
+def _rows(parameters: Iterator[Field[Any]]) -> list[str]:
     """One line for each parameter."""
     return [f"    {_given(p):<20} {_told(p)}" for p in parameters]
 
 
-def _given(parameter: DeclaredField) -> str:
+def _given(parameter: Field[Any]) -> str:
     """A parameter with its default, as it is written."""
     default = parameter.default
     shown = f"{default:g}" if isinstance(default, float) else str(default)
-    return f"{parameter.name}={'FILE' if default in (None, NO_DEFAULT) else shown}"
+    return f"{parameter.name}={'FILE' if default in (None, MISSING) else shown}"
 
 
-def _told(parameter: DeclaredField) -> str:
+def _told(parameter: Field[Any]) -> str:
     """What it does, its unit and what it may be."""
     metadata = parameter.metadata
-    text = str(metadata["help"])
+    text = str(metadata.get("help", ""))
     if "unit" in metadata:
         text += f" [{metadata['unit']}]"
     if "range" in metadata:
@@ -92,6 +115,6 @@ def _told(parameter: DeclaredField) -> str:
     return text
 
 
-def _facts(parameter: DeclaredField) -> dict[str, object]:
+def _facts(parameter: Field[Any]) -> dict[str, object]:
     """A parameter for programs."""
     return {"name": parameter.name, "default": parameter.default, **parameter.metadata}

@@ -1,5 +1,6 @@
 """One portrait in every style, as the paper's Fig. 6 shows them."""
 
+from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
@@ -22,10 +23,11 @@ from stages.media import (
 from stages.media.color.yuv import over_paper
 from stages.render import Renderer
 from stages.snapshot import Snapshot
-from stages.topology.refine import RefineOptions
-from stages.triangulate import TriangulateOptions, Triangulator
+from stages.topology.refine_options import RefineOptions
+from stages.triangulate import Triangulator
+from stages.triangulate_options import TriangulateOptions
+from warp_kernels.color_model import LINEAR
 from warp_kernels.device.device import Device
-from warp_kernels.energy.color_model import LINEAR
 from warp_kernels.errors import OptionError
 from warp_kernels.styles import STYLES
 
@@ -44,9 +46,14 @@ SAMPLE = Path(__file__).parents[2] / "sample_videos" / "astronaut.jpg"
 
 
 def draw_sheet(
-    picture: str | None, output: str, *, triangles: int = TRIANGLES, overwrite: bool = False
+    picture: str | None,
+    output: str,
+    *,
+    triangles: int = TRIANGLES,
+    overwrite: bool = False,
+    names: Iterable[str] | None = None,
 ) -> None:
-    """Write a picture that shows all styles.
+    """Write a picture that shows styles.
 
     Args:
         picture: What is drawn: a still, or a clip whose first frame is taken; None for the
@@ -54,6 +61,7 @@ def draw_sheet(
         output: A still.
         triangles: How many triangles it becomes.
         overwrite: Whether to replace what is there.
+        names: The styles; None for all that can be used.
 
     Raises:
         MediaError: If the picture cannot be read.
@@ -70,7 +78,8 @@ def draw_sheet(
     # faces count more, as in every other picture
     (alone,) = Attention([Faces()], info, 1, triangles).beside([InShot(frame.index, frame)])
     frame = alone.frame
-    stacks = [stack for name in STYLES for stack in STYLES[name].portraits or (name,)]
+    shown = STYLES.usable if names is None else {name: STYLES[name] for name in names}
+    stacks = [stack for name, cls in shown.items() for stack in cls.portraits or (name,)]
     with Device("auto") as device:
         snapshot = _triangulated(frame, device, triangles)
         cells = [_drawn(stack.split(OVER), snapshot, frame, device) for stack in stacks]

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pipeline.compare.pairs import Matched
-from stages.metrics import Motion, motion_difference, warp_error
+from stages.metrics import SourceMotion, motion_difference, warp_error
 
 _Pictures = tuple[np.ndarray, np.ndarray]
 
@@ -40,7 +40,7 @@ class CoherenceMeter:
 
     def __init__(self) -> None:
         self._earlier: deque[tuple[Matched, int]] = deque(maxlen=max(LAGS))
-        self.motion: Motion | None = None
+        self.motion: SourceMotion | None = None
         """Motion of the source from the frame before to the last one added, if of one shot."""
 
     def add(self, pair: Matched, shot: int) -> Coherence:
@@ -91,7 +91,7 @@ def mean_of(values: Iterable[float | None]) -> float | None:
 class _Compared:
     """Two frames of a shot."""
 
-    motion: Motion
+    motion: SourceMotion
     """How the source moves from one to the other."""
     error: float | None
     """E_warp of the output."""
@@ -101,7 +101,7 @@ class _Compared:
 
 def _compared(before: Matched, after: Matched) -> _Compared:
     source, output = _steps(before, after)
-    motion = Motion.between(*source)
+    motion = SourceMotion.between(*source)
     return _Compared(motion, warp_error(*output, motion), warp_error(*source, motion))
 
 

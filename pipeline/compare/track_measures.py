@@ -10,7 +10,7 @@ from pipeline.compare.coherence import mean_of
 from pipeline.compare.lifetimes import Lifetimes
 from pipeline.track import TrackReader
 from stages.media import MediaInfo
-from stages.metrics import Drift, Motion, drift, jitter, mesh_changes, pop_energy
+from stages.metrics import Drift, SourceMotion, drift, jitter, mesh_changes, pop_energy
 from stages.snapshot import Snapshot
 from warp_kernels.errors import TrackError
 
@@ -104,7 +104,7 @@ class TrackMeter:
             )
         return row.shot
 
-    def add(self, frame: int, motion: Motion | None) -> MeshFigures:
+    def add(self, frame: int, motion: SourceMotion | None) -> MeshFigures:
         """Compare the mesh of the next frame.
 
         Args:

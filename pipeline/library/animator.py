@@ -15,10 +15,10 @@ from pipeline.library.pushed import Pushed
 from pipeline.library.signature import with_keywords
 from pipeline.library.triangulation import Triangulation
 from pipeline.library.wording import worded
-from pipeline.loop.animate import triangulator_of
+from pipeline.loop.convert import triangulator_of
 from stages.frame import Frame
 from warp_kernels.errors import OptionError
-from warp_kernels.raster import MAX_SIDE
+from warp_kernels.limits import MAX_SIDE
 
 
 class Animator:

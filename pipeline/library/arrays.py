@@ -6,9 +6,10 @@ from typing import Any
 from pipeline.envelope import Solved
 from pipeline.library.given import given_values
 from pipeline.library.triangulation import Origin, Triangulation
-from pipeline.loop.animate import prepared, solved_frames
 from pipeline.loop.attention import Attention
-from pipeline.options.build import build_run, build_solve
+from pipeline.loop.convert import solved_frames
+from pipeline.loop.prepare import prepared
+from pipeline.options.build import fill, values_of
 from pipeline.options.run import Run
 from pipeline.options.solve_options import SolveOptions
 from stages.frame import Frame
@@ -30,8 +31,8 @@ def options_of_arrays(function: str, options: Mapping[str, Any]) -> tuple[SolveO
     Raises:
         OptionError: If there is no such option, or its value is impossible.
     """
-    given = {"source": ARRAYS, **given_values(function, options)}
-    return build_solve(given), build_run(given)
+    values = values_of({"source": ARRAYS, **given_values(function, options)})
+    return fill(SolveOptions, values), fill(Run, values)
 
 
 def solved_arrays(

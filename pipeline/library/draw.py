@@ -1,22 +1,27 @@
 """Draw the triangles of one frame by themselves."""
 
 from collections.abc import Mapping
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
 
 from pipeline.library.device import opened_device
-from pipeline.options.build import build_look, build_run
+from pipeline.options.build import fill, values_of
+from pipeline.options.look import Look
+from pipeline.options.run import Run
 from stages.frame import Frame
+from stages.look.framing import framed
 from stages.render import Renderer
 from stages.snapshot import Snapshot
-from stages.triangulate import TriangulateOptions, Triangulator
-from warp_kernels.energy.color_model import ColorModel
+from stages.triangulate import Triangulator
+from stages.triangulate_options import TriangulateOptions
+from warp_kernels.color_model import ColorModel
 from warp_kernels.errors import OptionError
 
 
 def drawn(
-    snapshot: Snapshot, frame: Frame | None, model: ColorModel, values: Mapping[str, Any]
+    snapshot: Snapshot, frame: Frame | None, model: ColorModel, given: Mapping[str, Any]
 ) -> np.ndarray:
     """Draw a snapshot.
 
@@ -24,7 +29,7 @@ def drawn(
         snapshot: The triangles and their colours.
         frame: The picture, or None if it was not kept.
         model: The colour model that was optimised.
-        values: Options of the look and the run, by field name.
+        given: Options of the look and the run, by field name.
 
     Returns:
         Code values, [rows, columns, 3] or [rows, columns, 4] uint8.
@@ -32,10 +37,11 @@ def drawn(
     Raises:
         OptionError: If a value is impossible, or the picture is needed and not there.
     """
-    look, run = build_look(values), build_run(values)
+    values = values_of(given)
+    look, run = fill(Look, values), fill(Run, values)
     styles, fitted = look.shown_styles(model), look.fitted(model)
     size = (snapshot.mesh.width, snapshot.mesh.height)
-    output = look.size_for(size)
+    framing = look.framing_for(size, Fraction(1))
     is_short = fitted.degree > snapshot.model.degree
     if frame is None and (is_short or look.needs_source):
         names = ", ".join(type(style).__name__.lower() for style in styles)
@@ -46,5 +52,6 @@ def drawn(
         if frame is not None and fitted != snapshot.model:
             options = TriangulateOptions(color=model.name)
             snapshot = Triangulator(device, size, options, fitted).fit(frame, snapshot.mesh)
-        renderer = Renderer(device, size, output, styles)
-        return renderer.render(snapshot, source=None if frame is None else frame.pixels)
+        renderer = Renderer(device, size, framing.picture, styles)
+        pixels = renderer.render(snapshot, source=None if frame is None else frame.pixels)
+    return framed(pixels, framing, look.backdrop(model))

@@ -89,6 +89,8 @@ class LookKeywords(TypedDict, total=False):
     regions: str | Sequence[str]
     size: str | tuple[int, int] | None
     scale: float | None
+    fit: str
+    background: str | None
     blend: int
     smooth: float
 
@@ -123,6 +125,8 @@ class DrawKeywords(DeviceKeywords, total=False):
     styles: str | Sequence[str]
     size: str | tuple[int, int] | None
     scale: float | None
+    fit: str
+    background: str | None
 
 
 def keyword_of(option: Option) -> str:
@@ -152,11 +156,14 @@ def _for_pictures(option: Option) -> bool:
     return described or option.dest in ("seed", "device", "threads")
 
 
+DRAWN = ("styles", "output_size", "scale", "fit", "background", "device", "threads")
+"""Options that say how one frame is drawn."""
+
 TAKEN: dict[str, Callable[[Option], bool]] = {
     **{name: COMMAND_OPTIONS[name] for name in ("animate", "solve", "render", "measure")},
     "triangulate": _for_pictures,
     "Animator": lambda option: _for_pictures(option) or option.group in ("triangles", "motion"),
-    "draw": lambda option: option.dest in ("styles", "output_size", "scale", "device", "threads"),
+    "draw": lambda option: option.dest in DRAWN,
 }
 """Which options a function takes."""
 

@@ -9,7 +9,7 @@ import numpy as np
 from stages.frame import Frame
 from stages.media import MediaInfo
 from warp_kernels.errors import OptionError
-from warp_kernels.raster import MAX_SIDE
+from warp_kernels.limits import MAX_SIDE
 
 RATE = Fraction(1, 25)
 """Arrays have no time; a frame must have one, and nothing depends on it."""

@@ -24,8 +24,8 @@ from pipeline.progress import Progress, Summary
 
 if TYPE_CHECKING:
     from pipeline.compare.report import Report
-    from pipeline.job import Job
-    from pipeline.loop.animate import Animated
+    from pipeline.loop.result import Animated
+    from pipeline.options.job import Job
 
 
 @with_keywords("animate")
@@ -47,13 +47,9 @@ def animate(
     """
     job = _job("animate", source, options, output=file_name("output", output))
     with progress_for(progress) as told, explained_loss(job.run.jobs):
-        if job.run.jobs > 1 or job.look.followed:
-            from pipeline.loop.processes import animate_in_parts
+        from pipeline.loop.animate import animate as run
 
-            return _result(animate_in_parts(job, told), job.output.path, told)
-        from pipeline.loop.animate import animate as animate_at_once
-
-        return _result(animate_at_once(job, told), job.output.path, told)
+        return _result(run(job, told), job.output.path, told)
 
 
 @with_keywords("solve")
@@ -75,15 +71,10 @@ def solve(
     # Looks, which a preset may hold, do not belong to a track.
     fixed = {"track": file_name("output", output), "styles": (), "regions": ()}
     job = _job("solve", source, options, **fixed)
-    parts = job.solve, job.output, job.run
     with progress_for(progress) as told, explained_loss(job.run.jobs):
-        if job.run.jobs > 1:
-            from pipeline.loop.processes import solve_in_parts
+        from pipeline.loop.animate import solve as run
 
-            return _result(solve_in_parts(*parts, told), job.output.track, told)
-        from pipeline.loop.animate import solve as solve_at_once
-
-        return _result(solve_at_once(*parts, told), job.output.track, told)
+        return _result(run(job.solve, job.output, job.run, told), job.output.track, told)
 
 
 @with_keywords("render")
@@ -112,11 +103,12 @@ def render(
     path, target = Path(file_name("track", track)), file_name("output", output)
     given = given_values("render", options)
     from pipeline.look.render_job import render_job
-    from pipeline.loop.animate import render as draw
+    from pipeline.loop.render import render as draw
     from pipeline.options.build import build_render
     from pipeline.track import TrackReader
+    from pipeline.track.kind import drawn_ending
 
-    wanted = build_render({**given, "output": target}, path)
+    wanted = build_render({**given, "output": target}, path, drawn_ending(path))
     with TrackReader(path) as reader, progress_for(progress) as told:
         made = render_job(reader, *wanted, moved)
         drawn = draw(made.job, reader, made.info, told)

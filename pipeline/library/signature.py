@@ -7,7 +7,7 @@ from typing import Any, TypeVar
 
 from pipeline.library.keywords import KEYWORDS, PRESET, options_of
 from pipeline.library.wording import in_keywords
-from pipeline.options.command_line import NO_DEFAULT, Option, member_of
+from pipeline.options.command_line import Option
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -29,7 +29,7 @@ def with_keywords(name: str) -> Callable[[Function], Function]:
             inspect.Parameter(
                 keyword,
                 inspect.Parameter.KEYWORD_ONLY,
-                default=_default(options[keyword]) if keyword in options else None,
+                default=options[keyword].default if keyword in options else None,
                 annotation=hints.get(keyword, Any),
             )
             for keyword in (*options, *(["preset"] if name in PRESET else []))
@@ -43,15 +43,7 @@ def with_keywords(name: str) -> Callable[[Function], Function]:
     return shown
 
 
-def _default(option: Option) -> object:
-    """What is taken if a keyword is left out, as it would be written."""
-    declared = option.declared
-    if declared.factory:
-        return member_of(declared.metadata["registry"], declared.factory)
-    return None if declared.default is NO_DEFAULT else declared.default
-
-
 def _help(option: Option) -> str:
     """The help of an option; a switch is told as what it is when it is on."""
-    text = str(option.declared.metadata["help"]) if option.is_switch else option.help
-    return in_keywords(text.replace("%%", "%"))
+    text = str(option.metadata["help"]) if option.is_switch else option.help
+    return in_keywords(text)

@@ -1,7 +1,6 @@
 """What a track was solved with, as keywords."""
 
 import dataclasses
-import importlib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -11,6 +10,7 @@ import numpy as np
 from pipeline.library.keywords import options_of
 from pipeline.track import Header
 from pipeline.track.agreement import FREE
+from warp_kernels.registry import Registry
 
 
 def solved_with(header: Header) -> Mapping[str, Any]:
@@ -24,8 +24,7 @@ def solved_with(header: Header) -> Mapping[str, Any]:
     told = {"frames": str(header.frame_range)}
     for keyword, option in options_of("solve").items():
         if option.dest in values and option.dest not in FREE:
-            registry = option.declared.metadata.get("registry")
-            told[keyword] = _plain(values[option.dest], registry)
+            told[keyword] = _plain(values[option.dest], option.registry)
     return told
 
 
@@ -41,12 +40,12 @@ def _flat(options: Any) -> Mapping[str, Any]:
     return found
 
 
-def _plain(value: Any, registry: str | None) -> Any:
+def _plain(value: Any, registry: Registry[Any] | None) -> Any:
     """A value as it is given.
 
     Args:
         value: What the options hold.
-        registry: The registry whose members it names, as module:NAME, or None.
+        registry: The registry whose members it names, or None.
     """
     if isinstance(value, tuple):
         return [_plain(entry, registry) for entry in value]
@@ -55,15 +54,12 @@ def _plain(value: Any, registry: str | None) -> Any:
     return str(value) if isinstance(value, Path) else value
 
 
-def _spec(member: Any, registry: str) -> str:
+def _spec(member: Any, registry: Registry[Any]) -> str:
     """A member of a registry as `name:key=value,...`; a picture that it holds is left out."""
-    module, _, table = registry.partition(":")
-    classes = getattr(importlib.import_module(module), table)
-    name = next(name for name, cls in classes.items() if cls is type(member))
     values = {field.name: getattr(member, field.name) for field in dataclasses.fields(member)}
     pairs = [
         f"{key}={value}"
         for key, value in values.items()
         if value is not None and not isinstance(value, np.ndarray)
     ]
-    return ":".join(filter(None, (name, ",".join(pairs))))
+    return ":".join(filter(None, (registry.name_of(type(member)), ",".join(pairs))))

@@ -10,7 +10,7 @@ from pipeline.library.pixels import frame_of, info_of, weights_of
 from pipeline.library.signature import with_keywords
 from pipeline.library.triangulation import Triangulation
 from pipeline.library.wording import worded
-from pipeline.loop.animate import triangulator_of
+from pipeline.loop.convert import triangulator_of
 
 
 @with_keywords("triangulate")

@@ -14,7 +14,7 @@ from stages.frame import Frame
 from stages.look.paint import paint_of
 from stages.media.writing.still_writer import encode_still
 from stages.snapshot import Snapshot
-from warp_kernels.energy.color_model import COLOR_MODELS
+from warp_kernels.color_model import COLOR_MODELS
 
 
 @dataclass(frozen=True)
@@ -108,6 +108,8 @@ class Triangulation:
         scale: float | None = None,
         *,
         size: str | tuple[int, int] | None = None,
+        fit: str = "contain",
+        background: str | None = None,
         device: str | None = None,
         threads: int | None = None,
     ) -> np.ndarray:
@@ -117,7 +119,9 @@ class Triangulation:
             styles: One or several, bottom to top, as on the command line: `edges:width=2`; the
                 triangles in their own colours if left out.
             scale: Size of what is drawn relative to the picture.
-            size: Width and height instead [px].
+            size: Width and height instead [px], or a text as on the command line: `1080x`.
+            fit: How the picture gets into another shape: `contain`, `cover` or `stretch`.
+            background: Colour of bars, and of what transparent styles leave open.
             device: Where kernels run; if left out, where they ran before.
             threads: Threads of the CPU; if left out, as many as before.
 
@@ -130,6 +134,7 @@ class Triangulation:
         """
         origin = self._origin
         options: dict[str, Any] = {"styles": styles, "scale": scale, "size": size}
+        options |= {"fit": fit, "background": background}
         options["device"] = origin.device if device is None else device
         options["threads"] = origin.threads if threads is None else threads
         model = COLOR_MODELS[origin.color]

@@ -1,13 +1,15 @@
 """Snapshots to frames of the output: drawn and encoded."""
 
 from contextlib import ExitStack
+from dataclasses import replace
 from types import TracebackType
 
 from pipeline.envelope import Solved
-from pipeline.job import Job
 from pipeline.look.region_masks import own_mask
 from pipeline.look.smooth import Smoother
+from pipeline.options.job import Job
 from stages.look.fading import Fading
+from stages.look.framing import Framing, framed
 from stages.look.strokes import Strokes
 from stages.masks.regions import open_masks
 from stages.media import MediaInfo, check_output, open_encoder
@@ -33,13 +35,21 @@ class Drawing:
         picture = (info.width, info.height)
         options, look, output = job.solve, job.look, job.output
         assert output.path is not None
-        size = look.size_for(picture)
+        self._framing = look.framing_for(picture, info.sample_aspect)
+        self._backdrop = look.backdrop(options.model)
         masked = tuple(region.style for region in look.regions)
         followed = tuple(i for i, region in enumerate(look.regions) if region.frames)
         styles = look.shown_styles(options.model)
-        self._renderer = Renderer(device, picture, size, styles, masked, followed)
+        drawn = self._framing.picture
+        self._renderer = Renderer(device, picture, drawn, styles, masked, followed)
         self._masks = open_masks(look.unfollowed, picture)
-        self._encoder = open_encoder(output.path, info, size, output.encode, options.frame_range)
+        self._encoder = open_encoder(
+            output.path,
+            _shown(info, self._framing),
+            self._framing.canvas,
+            output.encode,
+            options.frame_range,
+        )
         # Where every frame starts anew, triangles of the same number have nothing in common.
         self._blend = 0 if options.independent else look.blend
         self._smoother = Smoother(0.0 if options.independent else look.smooth)
@@ -51,7 +61,7 @@ class Drawing:
     @property
     def notes(self) -> list[str]:
         """Choices that were made, one sentence each; complete after the block."""
-        return self._encoder.notes
+        return [*_fitted(self._framing), *self._encoder.notes]
 
     def draw(self, solved: Solved) -> None:
         """Draw and encode a frame, or an earlier one that has been waiting for it."""
@@ -66,6 +76,7 @@ class Drawing:
             pixels = self._renderer.render(
                 snapshot, self._fading, solved.source, masks, solved.shares, self._lay
             )
+            pixels = framed(pixels, self._framing, self._backdrop)
             self._encoder.write(pixels, snapshot.pts, snapshot.time_base, snapshot.frame_index)
 
     def _follow(self, solved: Solved) -> None:
@@ -132,5 +143,27 @@ def check_drawing(job: Job, info: MediaInfo) -> None:
         for frame in region.frames:
             own_mask(region, frame, picture)
     assert job.output.path is not None
-    size = job.look.size_for(picture)
-    check_output(job.output.path, info, size, job.output.encode, job.solve.frame_range)
+    framing = job.look.framing_for(picture, info.sample_aspect)
+    check_output(
+        job.output.path,
+        _shown(info, framing),
+        framing.canvas,
+        job.output.encode,
+        job.solve.frame_range,
+    )
+
+
+def _shown(info: MediaInfo, framing: Framing) -> MediaInfo:
+    """The source as the canvas shows it, whose pixels may have another shape."""
+    if framing.sample_aspect is None:
+        return info
+    width, height = framing.canvas
+    return replace(info, width=width, height=height, sample_aspect=framing.sample_aspect)
+
+
+def _fitted(framing: Framing) -> list[str]:
+    """What is told of a picture with bars; what is cut off was asked for."""
+    if framing.is_plain or min(framing.offset) < 0:
+        return []
+    drawn, whole = ("{}x{}".format(*size) for size in (framing.picture, framing.canvas))
+    return [f"the picture is {drawn}, with bars to {whole}; --fit cover fills it"]

@@ -5,11 +5,12 @@ from pathlib import Path
 
 import numpy as np
 
-from pipeline.job import Job
+from pipeline.options.job import Job
 from pipeline.options.output import Output
 from pipeline.options.solve_options import SolveOptions
 from pipeline.track import TrackReader
-from stages.masks.regions import Mask, Region
+from stages.masks.region import Region
+from stages.masks.regions import Mask
 from stages.media import MediaInfo, count_frames, input_pattern, open_decoder
 from warp_kernels.errors import MediaError, OptionError
 

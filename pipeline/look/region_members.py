@@ -8,7 +8,7 @@ from pipeline.look.region_masks import check_dependent, own_mask
 from pipeline.options.look import Look
 from pipeline.options.solve_options import SolveOptions
 from pipeline.track import FrameRow, TrackReader
-from stages.masks.regions import Region
+from stages.masks.region import Region
 from stages.motion.inherit_regions import inherited, under_mask
 from warp_kernels.errors import OptionError
 

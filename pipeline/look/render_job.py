@@ -3,13 +3,13 @@
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from pipeline.job import Job
+from pipeline.options.job import Job
 from pipeline.options.look import Look
 from pipeline.options.output import Output
 from pipeline.options.run import Run
 from pipeline.track import TrackReader
 from stages.media import FrameRange, MediaInfo, input_pattern
-from warp_kernels.energy.color_model import ColorModel
+from warp_kernels.color_model import ColorModel
 from warp_kernels.errors import MediaError, OptionError, TrackError
 
 

@@ -1,67 +1,41 @@
-"""Video in, triangulated video out: the only loops over time.
+"""Video in, triangulated video out: `animate` and `solve` can do every job, and choose how.
 
-Solving turns frames into snapshots, drawing turns snapshots into frames. `animate` does both at
-once, `solve` the first and `render` the second, with a mesh track in between.
+Solving turns frames into snapshots, drawing turns snapshots into frames. `animate` does both,
+`solve` the first and `pipeline.loop.render` the second, with a mesh track in between.
 """
 
-from collections.abc import Generator, Iterable, Iterator, Sequence
-from contextlib import ExitStack, closing, nullcontext
-from dataclasses import dataclass, replace
+from collections.abc import Iterable
+from dataclasses import replace
 from time import perf_counter
 
 import numpy as np
 
-from pipeline.envelope import MeshFrom, Prepared, Solved
-from pipeline.job import Job
-from pipeline.look.drawing import Drawing, check_drawing
-from pipeline.look.region_members import followed_shares
-from pipeline.look.rows_around import rows_around
-from pipeline.look.source_pictures import source_pictures
-from pipeline.loop.attention import Attention
-from pipeline.loop.motion import check_cuts, open_around, with_motion
-from pipeline.loop.shots import with_shots
-from pipeline.loop.threads import Behind, ahead
+from pipeline.look.drawing import check_drawing
+from pipeline.look.region_masks import check_followed
+from pipeline.look.render_job import render_job
+from pipeline.loop.convert import convert
+from pipeline.loop.parts_folder import make_folder, parts_of, remove_folder
+from pipeline.loop.plan import Plan, plan
+from pipeline.loop.processes import InProcesses
+from pipeline.loop.ranges import InThisProcess, Part, RangeRunner, Work
+from pipeline.loop.render import render
+from pipeline.loop.result import Animated
+from pipeline.options.job import Job
 from pipeline.options.output import Output
 from pipeline.options.run import Run
 from pipeline.options.solve_options import SolveOptions
 from pipeline.progress import Progress
-from pipeline.track import FrameRow, TrackReader, TrackWriter
-from pipeline.track.resume import Past, Reached, open_track, past_of
-from stages.frame import Frame
-from stages.masks.weight_maps import WeightMap
-from stages.media import Decoder, FrameRange, MediaInfo, open_decoder
-from stages.media.expected_frames import expected_frames
-from stages.motion.advect import advect
-from stages.snapshot import Snapshot
-from stages.triangulate import Triangulator
-from warp_kernels.device.device import Device
-from warp_kernels.energy.color_model import ColorModel
+from pipeline.track import TrackReader, join, refuse_track
+from pipeline.track.resume import check_track_place
+from pipeline.track.schema import ENDING
+from stages.media import probe
+from stages.media.writing.commit import PendingFile
+from warp_kernels.color_model import ColorModel
 from warp_kernels.errors import OptionError
 
-DECODED_AHEAD = 3
-"""Decoded frames that may wait."""
-SOLVED_BEHIND = 3
-"""Triangulated frames that may wait to be drawn and encoded."""
 
-
-@dataclass(frozen=True)
-class Animated:
-    """What a finished job came to."""
-
-    frames: int
-    """Frames written."""
-    seconds: float
-    """Wall time, from the first frame's decoding to the finished file [s]."""
-    mean_rmse: float
-    """Mean over the frames of the root mean square error [code values]."""
-    warnings: tuple[str, ...]
-    """Damage that was met, one sentence each."""
-    notes: tuple[str, ...]
-    """Choices that were made, one sentence each."""
-
-
-def animate(job: Job, progress: Progress) -> Animated:
-    """Convert a source at once; a job that follows regions needs `animate_in_parts`.
+def animate(job: Job, progress: Progress, runner: RangeRunner | None = None) -> Animated:
+    """Convert a source.
 
     Nothing is written under the output's name unless the whole job succeeds; a track that the
     job writes beside it keeps every frame that was solved.
@@ -69,20 +43,18 @@ def animate(job: Job, progress: Progress) -> Animated:
     Args:
         job: What to do.
         progress: Told of every finished frame.
+        runner: Who solves; as the job's `jobs` say if left out.
 
     Raises:
         MediaError: If the source or the map of weights cannot be read.
-        OptionError: If an option does not fit the source, or regions are to be followed.
+        OptionError: If an option does not fit the source.
         OutputError: If the output cannot be written.
         TrackError: If the track to go on with cannot be.
     """
-    if job.look.followed:
-        region = job.look.followed[0]
-        raise OptionError(
-            f"--region {region.mask}@{region.frames[0]}: a frame is drawn here before later ones "
-            "are solved, and this region may come from these; use animate_in_parts"
-        )
-    return _convert(job, job.fitted, progress)
+    runner = runner or runner_of(job.run)
+    if runner.places > 1 or job.look.followed:
+        return _solved_then_drawn(job, progress, runner)
+    return convert(job, job.fitted, progress)
 
 
 def solve(
@@ -91,8 +63,9 @@ def solve(
     run: Run,
     progress: Progress,
     fitted: ColorModel | None = None,
+    runner: RangeRunner | None = None,
 ) -> Animated:
-    """Solve a source and write the mesh track alone.
+    """Solve a source and write the mesh track alone; it is the same to the bit whoever solves it.
 
     Args:
         options: What decides the meshes.
@@ -100,6 +73,7 @@ def solve(
         run: What the work may use.
         progress: Told of every finished frame.
         fitted: The colour model of the snapshots, if a look needs more than the optimised one.
+        runner: Who solves; as `run.jobs` says if left out.
 
     Raises:
         MediaError: If the source cannot be read.
@@ -107,254 +81,120 @@ def solve(
         OutputError: If the track cannot be written.
         TrackError: If the track to go on with cannot be.
     """
-    job = Job(options, output=replace(output, path=None), run=run)
-    return _convert(job, fitted or options.model, progress)
+    runner = runner or runner_of(run)
+    work = Work(options, replace(run, jobs=1), fitted or options.model)
+    planned = _planned(options, output, runner)
+    if planned is not None:
+        return _joined(work, planned, output, runner, progress)
+    (result,) = runner.run(work, [Part(options.frame_range, output)], progress)
+    return result
 
 
-def render(job: Job, track: TrackReader, info: MediaInfo, progress: Progress) -> Animated:
-    """Draw a track.
+def runner_of(run: Run) -> RangeRunner:
+    """Who solves ranges on this machine.
 
     Args:
-        job: What to do, with the options that the track was made with.
-        track: Holds the snapshots.
-        info: The track's source as far as it can still be read.
-        progress: Told of every finished frame.
+        run: Says how many processes there may be.
+    """
+    return InProcesses(run.jobs) if run.jobs > 1 else InThisProcess()
 
-    Raises:
-        MediaError: If the source is needed and cannot be read.
-        OptionError: If an option does not fit the track.
-        OutputError: If the output cannot be written.
-        TrackError: If the track is damaged.
+
+def _planned(options: SolveOptions, output: Output, runner: RangeRunner) -> Plan | None:
+    """Which shots are solved apart, if there are places for several; else None."""
+    if runner.places == 1 or output.track is None:
+        return None
+    check_track_place(output.track, output)
+    if output.resume and output.track.exists():
+        return None  # what is resumed goes on inside a shot
+    planned = plan(options)
+    return planned if len(planned.ranges) > 1 else None
+
+
+def _joined(
+    work: Work, planned: Plan, output: Output, runner: RangeRunner, progress: Progress
+) -> Animated:
+    """Let ranges be solved, and put their tracks together."""
+    begun = perf_counter()
+    track = output.track
+    assert track is not None
+    make_folder(track, resume=output.resume, overwrite=output.overwrite)
+    parts = parts_of(planned.ranges, track)
+    results = runner.run(work, parts, progress)
+    tracks = [part.output.track for part in parts if part.output.track is not None]
+    join(tracks, track, work.options.frame_range)
+    with TrackReader(track) as reader:
+        mean = float(np.mean([row.rmse for row in reader.rows]))
+    remove_folder(track)
+    told = (note for result in results for note in result.notes)
+    notes = _each_once([*planned.notes, *told])
+    if len(parts) < runner.places:
+        notes = (*notes, f"{len(parts)} shots: so many processes, not {runner.places}")
+    warnings = _each_once(text for result in results for text in result.warnings)
+    frames = sum(result.frames for result in results)
+    return Animated(frames, perf_counter() - begun, mean, warnings, notes)
+
+
+def _each_once(texts: Iterable[str]) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(texts))
+
+
+def _solved_then_drawn(job: Job, progress: Progress, runner: RangeRunner) -> Animated:
+    """Solve all, then draw all: a frame is half done when it is solved, and done when drawn.
+
+    Where shots are solved side by side, and where regions are followed: these reach back to frames
+    before their mask's.
     """
     begun = perf_counter()
+    both = _Halves(progress)
+    options, output = job.solve, job.output
+    assert output.path is not None
+    refuse_track(options.source)
+    info = probe(options.source, read=options.read)
+    check_followed(job, info)
     check_drawing(job, info)
-    options, look = job.solve, job.look
-    device = Device(job.run.device, job.run.threads)
-    shown = track.rows_in(options.frame_range)
-    rows = rows_around(track.rows, shown, options, look)
-    tally = _Tally(progress, len(shown))
-    drawing = Drawing(job, info, device)
-    with device, drawing, Behind(drawing.draw, SOLVED_BEHIND) as writer:
-        fitted = _fitted(track, rows, options, job.fitted, device)
-        sources = source_pictures(options, look, rows)
-        shares = followed_shares(options, look, track, rows)
-        for snapshot, row, source, share in zip(fitted, rows, sources, shares, strict=True):
-            is_shown = shown[0].frame <= row.frame <= shown[-1].frame
-            writer.put(Solved(row.shot, snapshot, source, share, is_shown=is_shown))
-            if is_shown:
-                tally.add(row.triangle_count, snapshot.rmse)
-    return tally.result(begun, (), [*device.notes, *drawing.notes])
+    if output.track is None and output.resume:
+        raise OptionError("--resume: nothing is left to go on with; name a --track FILE.mtrk")
+    track = output.track or PendingFile(output.path).path.with_suffix(ENDING)
+    try:
+        kept = replace(output, track=track)
+        solved = solve(options, kept, job.run, both, job.fitted, runner)
+        with TrackReader(track) as reader:
+            wanted, source = options.frame_range, options.source
+            drawn = render_job(reader, wanted, job.look, output, job.run, source)
+            both.second_half()
+            result = render(drawn.job, reader, drawn.info, both)
+    finally:
+        if output.track is None:
+            track.unlink(missing_ok=True)
+            remove_folder(track)
+    return replace(
+        result,
+        seconds=perf_counter() - begun,
+        warnings=(*solved.warnings, *result.warnings),
+        notes=_each_once([*solved.notes, *result.notes]),
+    )
 
 
-def _convert(job: Job, fitted: ColorModel, progress: Progress) -> Animated:
-    """Solve a job, and draw it at once if that is wanted."""
-    begun = perf_counter()
-    options, track_path = job.solve, job.output.track
-    draws = job.output.path is not None
-    past = past_of(options, job.output, fitted)
-    with open_around(options, None if past is None else past.reached) as decoder:
-        info = decoder.info
-        check_cuts(options.cuts, options.source, info)
-        if draws:
-            check_drawing(job, info)
-        device = Device(job.run.device, job.run.threads)
-        count = options.triangulate.refine.triangles
-        attention = Attention(options.foci, info, options.frame_range.step, count)
-        size = (info.width, info.height)
-        maps = [WeightMap(str(m.file), size, options.frame_range, m.strength) for m in options.maps]
-        triangulator = triangulator_of(options, size, device, fitted)
-        drawing = Drawing(job, info, device) if draws else None
-        tally = _Tally(progress, expected_frames(options.frame_range, info))
-        restarts: list[str] = []
-        found = _opened(decoder, attention, maps, options, past, restarts)
-        with device, open_track(options, track_path, info, fitted, past) as track:
-            writer = Behind(_Writer(track, drawing), SOLVED_BEHIND)
-            with drawing or nullcontext(), closing(found), writer:
-                if past is not None:
-                    _recall(job, tally, writer if draws else None)
-                keeps = job.look.needs_source
-                for solved in solved_frames(found, triangulator, options, past, keeps=keeps):
-                    writer.put(solved)
-                    tally.add(solved.snapshot.mesh.triangle_count, solved.snapshot.rmse)
-            if track is not None:
-                track.finish()
-    made = [] if drawing is None else drawing.notes
-    warnings = [*decoder.warnings, *(text for one in maps for text in one.warnings)]
-    notes = [] if past is None else past.notes
-    notes += restarts if track_path is not None else []
-    told = [*device.notes, *decoder.notes, *notes, *attention.notes]
-    told += [note for one in maps for note in one.notes]
-    return tally.result(begun, warnings, [*told, *made])
+class _Halves(Progress):
+    """One progress of two passes over the same frames, of which each counts for a half."""
 
-
-def triangulator_of(
-    options: SolveOptions, size: tuple[int, int], device: Device, fitted: ColorModel
-) -> Triangulator:
-    """What makes snapshots of a source for the looks that will be drawn.
-
-    Args:
-        options: Say how pictures become triangles.
-        size: Width and height of the source, upright [px].
-        device: Where kernels run.
-        fitted: The colour model of the snapshots.
-    """
-    return Triangulator(device, size, options.triangulate, fitted)
-
-
-def _opened(
-    decoder: Decoder,
-    attention: Attention,
-    maps: Sequence[WeightMap],
-    options: SolveOptions,
-    past: Past | None,
-    notes: list[str],
-) -> Generator[Prepared, None, None]:
-    """Decode and prepare frames ahead of the solution."""
-    reached = None if past is None else past.reached
-    found = prepared(decoder, decoder.info, attention, maps, options, reached, notes)
-    return ahead(found, DECODED_AHEAD)
-
-
-def prepared(
-    frames: Iterable[Frame],
-    info: MediaInfo,
-    attention: Attention,
-    maps: Sequence[WeightMap],
-    options: SolveOptions,
-    reached: Reached | None,
-    notes: list[str],
-) -> Iterator[Prepared]:
-    """Find cuts, weigh and estimate motion: all that frames go through before they are solved.
-
-    Args:
-        frames: The frames of the range and around it.
-        info: Their source.
-        attention: Weighs them by what `--focus` names.
-        maps: Weigh them by pictures; closed after the last frame.
-        options: Say what is wanted.
-        reached: Where an earlier run ended, or None.
-        notes: Receives what the user of a track should know, one sentence each.
-    """
-    weighed = attention.beside(with_shots(frames, options.cuts))
-    found = with_motion(weighed, info, options, reached, notes)
-    return _beneath(maps, found) if maps else found
-
-
-def _beneath(maps: Sequence[WeightMap], found: Iterable[Prepared]) -> Iterator[Prepared]:
-    """Weigh frames by pictures; one that is solved already needs no weights."""
-    with ExitStack() as stack:
-        for weights in maps:
-            stack.callback(weights.close)
-        for prepared in found:
-            frame = prepared.frame
-            if prepared.mesh_from is not MeshFrom.TRACK:
-                for weights in maps:
-                    frame = weights.weighed(frame)
-            yield replace(prepared, frame=frame)
-
-
-def solved_frames(
-    found: Iterable[Prepared],
-    triangulator: Triangulator,
-    options: SolveOptions,
-    past: Past | None,
-    *,
-    keeps: bool = False,
-) -> Iterator[Solved]:
-    """Triangulate frame after frame, each from the mesh of the one before.
-
-    Args:
-        found: The frames, and the motion between them; one is taken for each that is given.
-        triangulator: Made by `triangulator_of` for the options.
-        options: Say how frames begin.
-        past: What an earlier run left, or None.
-        keeps: Whether what draws them needs their pictures.
-    """
-    snapshot = None if past is None else past.snapshot
-    for prepared in found:
-        frame, mesh_from = prepared.frame, prepared.mesh_from
-        if snapshot is None or mesh_from is MeshFrom.LAYOUT:
-            rng = np.random.default_rng([options.seed, frame.index])
-            snapshot = triangulator.first(frame, options.layout, rng)
-        elif mesh_from is MeshFrom.TRACK:
-            triangulator.recall(frame, snapshot)
-            continue
-        elif mesh_from is MeshFrom.SAME_PICTURE:
-            snapshot = snapshot.again(frame)
-        else:
-            snapshot = triangulator.next(frame, advect(snapshot.mesh, mesh_from), snapshot)
-        yield prepared.solved(snapshot, keeps_picture=keeps)
-
-
-def _recall(job: Job, tally: "_Tally", writer: Behind[Solved] | None) -> None:
-    """Count what the track holds already, and draw it if that is wanted."""
-    options, is_drawn = job.solve, writer is not None
-    assert job.output.track is not None
-    with TrackReader(job.output.track) as track:
-        rows = track.rows_in(options.frame_range)
-        sources = source_pictures(options, job.look, rows) if is_drawn else [None] * len(rows)
-        for row, source in zip(rows, sources, strict=True):
-            if writer is not None:
-                writer.put(Solved(row.shot, track.snapshot(row.frame), source, is_stored=True))
-            tally.add(row.triangle_count, row.rmse, is_told=is_drawn)
-
-
-def _fitted(
-    track: TrackReader,
-    rows: list[FrameRow],
-    options: SolveOptions,
-    fitted: ColorModel,
-    device: Device,
-) -> Iterator[Snapshot]:
-    """The snapshots of a track; where a look needs other colours, these are fitted again."""
-    info = track.header.info
-    if fitted == track.header.model:
-        yield from track.snapshots(rows)
-        return
-    around = FrameRange(rows[0].frame, rows[-1].frame, track.header.frame_range.step)
-    triangulator = triangulator_of(options, (info.width, info.height), device, fitted)
-    wanted = {row.frame for row in rows}
-    with open_decoder(options.source, around, read=options.read) as decoder:
-        for frame in (frame for frame in decoder if frame.index in wanted):
-            yield triangulator.fit(frame, track.snapshot(frame.index).mesh)
-
-
-class _Tally:
-    """Counts finished frames and tells of them."""
-
-    def __init__(self, progress: Progress, total: int | None) -> None:
-        self._progress = progress
-        self._total = total
-        self._errors: list[float] = []
+    def __init__(self, whole: Progress) -> None:
+        super().__init__()
+        self._whole = whole
+        self._is_second = False
         self._told = 0
 
-    def add(self, triangles: int, rmse: float, *, is_told: bool = True) -> None:
-        """Count a frame; what an earlier run told of is not told again."""
-        self._errors.append(rmse)
-        if is_told:
-            self._told += 1
-            self._progress.frame(len(self._errors), self._total, triangles, rmse)
+    def second_half(self) -> None:
+        """The first pass is over."""
+        self._is_second = True
 
-    def result(self, begun: float, warnings: Iterable[str], notes: Iterable[str]) -> Animated:
-        """What the job came to."""
-        return Animated(
-            frames=self._told,
-            seconds=perf_counter() - begun,
-            mean_rmse=float(np.mean(self._errors)),
-            warnings=tuple(warnings),
-            notes=tuple(notes),
-        )
+    def kernels(self, done: int, total: int | None) -> None:
+        """Tell how far compiling is."""
+        self._whole.kernels(done, total)
 
-
-class _Writer:
-    """Stores a solved frame, and draws it."""
-
-    def __init__(self, track: TrackWriter | None, drawing: Drawing | None) -> None:
-        self._track = track
-        self._drawing = drawing
-
-    def __call__(self, solved: Solved) -> None:
-        if self._track is not None and not solved.is_stored:
-            self._track.write(solved.snapshot, solved.shot)
-        if self._drawing is not None:
-            self._drawing.draw(solved)
+    def frame(self, done: int, total: int | None, triangles: int, rmse: float) -> None:
+        """Tell of a frame whenever two halves are finished."""
+        together = done if total is None or not self._is_second else done + total
+        if together // 2 > self._told:
+            self._told = together // 2
+            self._whole.frame(self._told, total, triangles, rmse)

@@ -1,12 +1,15 @@
 """What decides a picture, once there is a mesh: styles, regions, size, smoothness over time."""
 
 from dataclasses import dataclass, field
+from fractions import Fraction
 
-from stages.masks.regions import Region
-from warp_kernels.energy.color_model import CONSTANT, LINEAR, ColorModel
+from stages.look.framing import Framing, framing_of
+from stages.masks.region import Region
+from warp_kernels.color_model import CONSTANT, LINEAR, ColorModel
 from warp_kernels.errors import OptionError
-from warp_kernels.raster import MAX_SIDE
-from warp_kernels.styles import Flat, Gradient, Style
+from warp_kernels.limits import MAX_SIDE
+from warp_kernels.styles import STYLES, Style
+from warp_kernels.styles.color import parse_color
 
 MAX_BLEND = 250
 """Frames; ten seconds. What fades must be kept in memory."""
@@ -27,7 +30,7 @@ class Look:
         metadata={
             "help": "look of the triangles, repeatable from bottom to top "
             "(default: flat, or gradient with --color linear)",
-            "registry": "warp_kernels.styles:STYLES",
+            "registry": STYLES,
             "flag": "style",
         },
     )
@@ -46,12 +49,31 @@ class Look:
     output_size: tuple[int, int] | None = field(
         default=None,
         metadata={
-            "help": "size of the output (default: the source's)",
+            "help": "size of the output: WxH, 1080x or x1080 for the source's shape, or square, "
+            "portrait, story, 720p, 1080p, 1440p, 4k (default: the source's)",
             "metavar": "WxH",
             "flag": "size",
         },
     )
-    """Width and height of the output [px], or None."""
+    """Width and height of the output [px], 0 for one that follows from the other; or None."""
+    fit: str = field(
+        default="contain",
+        metadata={
+            "help": "how the picture gets into a --size of another shape: contain shows all of it "
+            "with bars, cover fills and cuts off, stretch fills with pixels that are no squares",
+            "choices": ("contain", "cover", "stretch"),
+        },
+    )
+    """`contain`, `cover` or `stretch`."""
+    background: str | None = field(
+        default=None,
+        metadata={
+            "help": "colour of bars, and of what transparent styles leave open: #rgb, #rrggbb or a "
+            "name (default: bars as the paper among the styles, or black)",
+            "metavar": "COLOR",
+        },
+    )
+    """A colour, or None for that of the lowest style's paper."""
     scale: float | None = field(
         default=None, metadata={"help": "size of the output relative to the source"}
     )
@@ -75,7 +97,13 @@ class Look:
         if self.output_size is not None and self.scale is not None:
             raise OptionError("--size and --scale exclude each other; give one of them")
         if self.output_size is not None:
-            check_output_size(self.output_size, "--size {}x{}".format(*self.output_size))
+            width, height = self.output_size
+            sides = (width or height, height or width)
+            check_output_size(sides, f"--size {width or ''}x{height or ''}")
+        if self.fit not in ("contain", "cover", "stretch"):
+            raise OptionError(f"--fit {self.fit}: choose from contain, cover, stretch")
+        if self.background is not None:
+            _read_color(self.background)
         if self.scale is not None and not 0 < self.scale <= MAX_SIDE:
             raise OptionError(
                 f"--scale {self.scale:g}: must be above 0 and at most {MAX_SIDE}; try 2"
@@ -93,7 +121,7 @@ class Look:
         Args:
             model: The colour model that is optimised.
         """
-        return self.styles or ((Gradient() if model.degree > 0 else Flat()),)
+        return self.styles or (STYLES["gradient" if model.degree > 0 else "flat"](),)
 
     def fitted(self, model: ColorModel) -> ColorModel:
         """The colour model of the snapshots: the optimised one, or what a look needs beyond.
@@ -129,26 +157,42 @@ class Look:
     def _in_regions(self) -> tuple[Style, ...]:
         return tuple(region.style for region in self.regions)
 
-    def size_for(self, source_size: tuple[int, int]) -> tuple[int, int]:
-        """Size of the output for a source.
+    def backdrop(self, model: ColorModel) -> tuple[float, float, float] | None:
+        """What is seen where there is no picture [code values]; None where nothing is.
 
         Args:
-            source_size: Width and height of the source, upright [px].
+            model: The colour model that is optimised.
+        """
+        if self.background is not None:
+            return _read_color(self.background)
+        for style in reversed(self.shown_styles(model)):
+            if style.is_opaque:
+                return None if style.ground is None else parse_color(style.ground)
+        return None
 
-        Returns:
-            Width and height [px].
+    def framing_for(self, source: tuple[int, int], sample_aspect: Fraction) -> Framing:
+        """Where the picture lies on the output.
+
+        Args:
+            source: Width and height of the source, upright [px].
+            sample_aspect: Width of its pixels over their height.
 
         Raises:
-            OptionError: If a scaled source has no pixel or too many.
+            OptionError: If the output has no pixel or too many.
         """
-        if self.output_size is not None:
-            return self.output_size
         if self.scale is None:
-            return source_size
-        width, height = (round(side * self.scale) for side in source_size)
-        what = f"--scale {self.scale:g} makes {width}x{height} of {source_size[0]}x{source_size[1]}"
+            return framing_of(source, sample_aspect, self.output_size, self.fit)
+        width, height = (round(side * self.scale) for side in source)
+        what = f"--scale {self.scale:g} makes {width}x{height} of {source[0]}x{source[1]}"
         check_output_size((width, height), what)
-        return width, height
+        return Framing((width, height), (width, height), None)
+
+
+def _read_color(text: str) -> tuple[float, float, float]:
+    try:
+        return parse_color(text)
+    except OptionError as error:
+        raise OptionError(f"--background {text}: {error}") from error
 
 
 def check_output_size(size: tuple[int, int], what: str) -> None:

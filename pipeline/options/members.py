@@ -1,56 +1,47 @@
 """Members of a registry as users write them: `edges:width=1.5,color=#222`, `importance:MAP.png`."""
 
-import math
-import re
-import types
-import typing
+import inspect
+from argparse import ArgumentTypeError
 from collections.abc import Mapping
+from dataclasses import Field, fields
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from pipeline.options.declared import own_first
 from pipeline.options.nearest import nearest
-from stages.masks.gray import read_gray
-from stages.masks.regions import Region
-from stages.media import input_pattern
+from pipeline.options.values import NAMES, kind_of, read_value
+from stages.masks.region import Region
 from warp_kernels.errors import OptionError
-
-_FRAMES = re.compile(r"[0-9]+(,[0-9]+)*")
-_SWITCHES = {"true": True, "yes": True, "1": True, "false": False, "no": False, "0": False}
 
 
 def parse_member(flag: str, text: str, registry: Mapping[str, type]) -> Any:
-    """Make a member of a registry.
-
-    Args:
-        flag: The option, for messages, such as `--style`.
-        text: `NAME`, `NAME:KEY=VALUE,...`; a value without a key is the first parameter's.
-        registry: Classes by name.
+    """Make a member of a registry from `NAME` or `NAME:KEY=VALUE,...`; messages name the option.
 
     Raises:
         OptionError: If the name, a parameter or a value is not allowed.
         MediaError: If a picture that is a parameter cannot be read.
     """
-    name, _, rest = text.partition(":")
-    if name not in registry:
-        raise OptionError(f"{flag} {text}: {_no_member(text, registry)}")
-    cls = registry[name]
-    kinds = _parameters(cls)
-    values: dict[str, Any] = {}
-    for key, value in _pairs(flag, text, rest, kinds):
-        if key not in kinds:
-            known = f"it has {', '.join(kinds)}" if kinds else "it has none; write the name alone"
-            raise OptionError(f"{flag} {text}: {name} has no parameter {key!r}; {known}")
-        if key in values:
-            raise OptionError(f"{flag} {text}: {key} is given twice; give it once")
-        values[key] = _convert(f"{flag} {text}: {key}", value, kinds[key])
     try:
-        return cls(**values)
-    except OptionError as error:
+        return _member(text, registry)
+    except (OptionError, ArgumentTypeError) as error:
         problem = str(error).removeprefix(f"{text}: ")
         raise OptionError(f"{flag} {text}: {problem}") from error
+
+
+def _member(text: str, registry: Mapping[str, type]) -> Any:
+    name, _, rest = text.partition(":")
+    if name not in registry:
+        raise OptionError(_no_member(text, registry))
+    cls: Any = registry[name]
+    kinds = {field.name: kind_of(field) for field in parameters(cls)}
+    values: dict[str, Any] = {}
+    for key, value in _pairs(rest, kinds):
+        if key not in kinds:
+            known = f"it has {', '.join(kinds)}" if kinds else "it has none; write the name alone"
+            raise OptionError(f"{name} has no parameter {key!r}; {known}")
+        if key in values:
+            raise OptionError(f"{key} is given twice; give it once")
+        values[key] = read_value(kinds[key], value, key)
+    return cls(**values)
 
 
 def _no_member(text: str, registry: Mapping[str, type]) -> str:
@@ -58,75 +49,46 @@ def _no_member(text: str, registry: Mapping[str, type]) -> str:
     name, _, rest = text.partition(":")
     owner, equals, value = name.partition("=")
     if equals and owner in registry:
-        first = next(iter(_parameters(registry[owner])), None)
+        first = next(iter(parameters(registry[owner])), None)
         if first is not None:
-            written = ",".join(filter(None, [f"{first}={value}", rest]))
-            return f"a parameter has its name after a colon; write {owner}:{written}"
+            pairs = ",".join(filter(None, [f"{first.name}={value}", rest]))
+            return f"a parameter has its name after a colon; write {owner}:{pairs}"
     return f"no {name!r}; {nearest(name, registry)}"
 
 
 def parse_region(flag: str, text: str, styles: Mapping[str, type]) -> Region:
-    """Make a region.
-
-    Args:
-        flag: The option, for messages, such as `--region`.
-        text: `MASK:STYLE` or `MASK@FRAME,FRAME,...:STYLE`; the name of the mask may hold colons.
-        styles: Styles by name.
+    """Make a region of `MASK:STYLE`; the name of the mask may hold colons, see `Region.of`.
 
     Raises:
         OptionError: If there is no mask or no such style, or what follows @ are no frames.
-        MediaError: If a picture that is a parameter cannot be read.
     """
     parts = text.split(":")
     for number in range(1, len(parts)):
         if parts[number] in styles:
             style = parse_member(flag, ":".join(parts[number:]), styles)
-            mask, frames = _mask_and_frames(flag, ":".join(parts[:number]))
-            return Region(mask, style, frames)
+            return Region.of(":".join(parts[:number]), style, flag)
     raise OptionError(
         f"{flag} {text}: write MASK:STYLE, such as mask.png:hatching, or MASK@FRAME:STYLE; styles "
         f"are {', '.join(styles)}"
     )
 
 
-def _mask_and_frames(flag: str, text: str) -> tuple[str, tuple[int, ...]]:
-    """A mask and the frames that it was drawn for, unless the whole is the name of a file."""
-    mask, _, frames = text.rpartition("@")
-    if not mask or _is_there(text):
-        return text, ()
-    if _FRAMES.fullmatch(frames):
-        return mask, tuple(sorted({int(frame) for frame in frames.split(",")}))
-    if _is_there(mask):
-        raise OptionError(
-            f"{flag} {text}: {frames!r} are no frames; after @ stand their numbers, such as "
-            "MASK@57 or MASK@57,120"
-        )
-    return text, ()
+def parameters(cls: Any) -> list[Field[Any]]:
+    """What a member is made with: its own fields, then inherited ones, the nearest first."""
+    order = [name for base in cls.__mro__ for name in inspect.get_annotations(base)]
+    return sorted((f for f in fields(cls) if f.init), key=lambda field: order.index(field.name))
 
 
-def _is_there(name: str) -> bool:
-    """Whether a name is that of a file or of numbered stills."""
-    pattern = input_pattern(name)
-    return Path(name).exists() if pattern is None else bool(pattern.numbers())
+def written(name: str, cls: Any) -> str:
+    """A member with its parameters and their defaults, as it would be given."""
+    values = (f"{p.name}={'FILE' if p.default is None else p.default}" for p in parameters(cls))
+    return ":".join(filter(None, [name, ",".join(values)]))
 
 
-def _parameters(cls: type) -> dict[str, Any]:
-    """Types of a dataclass's parameters, without None, by name; its own before inherited ones."""
-    hints = typing.get_type_hints(cls)
-    fields = (field for field in own_first(cls) if field.init)
-    return {field.name: _without_none(hints[field.name]) for field in fields}
-
-
-def _without_none(hint: Any) -> Any:
-    if isinstance(hint, types.UnionType):
-        return next(part for part in typing.get_args(hint) if part is not types.NoneType)
-    return hint
-
-
-def _pairs(flag: str, text: str, rest: str, kinds: Mapping[str, Any]) -> list[tuple[str, str]]:
-    """Split what follows a name into keys and values."""
+def _pairs(rest: str, kinds: Mapping[str, str]) -> list[tuple[str, str]]:
+    """Keys and values of what follows a name; the first value may be that of a text or a file."""
     first = next(iter(kinds), None)
-    takes_bare = first is not None and kinds[first] in (str, Path, np.ndarray)
+    takes_bare = first is not None and kinds[first].removesuffix(" | None") in NAMES
     if first is not None and takes_bare and Path(rest).is_file():
         return [(first, rest)]  # whatever signs its name holds
     pairs = []
@@ -135,25 +97,6 @@ def _pairs(flag: str, text: str, rest: str, kinds: Mapping[str, Any]) -> list[tu
         if not equals and number == 0 and first is not None and takes_bare:
             key, value = first, item
         elif not (key and equals and value):
-            raise OptionError(f"{flag} {text}: {item!r} is not KEY=VALUE; write name:key=value,...")
+            raise OptionError(f"{item!r} is not KEY=VALUE; write name:key=value,...")
         pairs.append((key.strip().replace("-", "_"), value.strip()))
     return pairs
-
-
-def _convert(what: str, text: str, kind: Any) -> Any:
-    """Value of a parameter of a given type."""
-    try:
-        if kind is bool:
-            return _SWITCHES[text.lower()]
-        if kind is int:
-            return int(text)
-        if kind is float and math.isfinite(number := float(text)):
-            return number
-    except (ValueError, KeyError):
-        pass
-    if kind is np.ndarray:
-        return read_gray(text)
-    if kind in (str, Path):
-        return kind(text)
-    wanted = {bool: "true or false", int: "a whole number", float: "a number"}[kind]
-    raise OptionError(f"{what}={text}: write {wanted}")

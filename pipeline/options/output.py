@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from stages.media import EncodeOptions
+from stages.media.writing.encode_options import EncodeOptions
 
 
 @dataclass(frozen=True)

@@ -3,6 +3,8 @@
 import os
 from pathlib import Path
 
+from warp_kernels.errors import TrimotionError
+
 STILLS = frozenset({".png", ".jpg", ".jpeg", ".tif", ".tiff", ".webp"})
 """Endings of stills that are kept."""
 FILMS = frozenset({".mp4", ".m4v", ".mov", ".mkv", ".webm", ".gif"})
@@ -11,7 +13,12 @@ OTHER_STILLS = frozenset(
     {".avif", ".bmp", ".exr", ".heic", ".heif", ".jp2", ".jxl", ".pbm", ".pgm", ".pnm", ".ppm"}
     | {".psd", ".qoi", ".tga"}
 )
-"""Endings of stills that can be read only; they become PNG, and any other source becomes MP4."""
+"""Endings of stills that can be read only; they become PNG."""
+OTHER_FILMS = frozenset(
+    {".3gp", ".apng", ".asf", ".avi", ".dv", ".f4v", ".flv", ".h264", ".hevc", ".ivf", ".m2ts"}
+    | {".mjpeg", ".mpeg", ".mpg", ".mts", ".mxf", ".ogv", ".ts", ".vob", ".wmv", ".y4m"}
+)
+"""Endings of films that can be read only; they become MP4."""
 
 
 def output_in(output: str | Path, source: str | Path, ending: str | None = None) -> Path:
@@ -30,4 +37,23 @@ def output_in(output: str | Path, source: str | Path, ending: str | None = None)
     own = name.suffix.lower()
     if ending is None and own in STILLS | FILMS:
         return place / name.name
-    return place / f"{name.stem}{ending or ('.png' if own in OTHER_STILLS else '.mp4')}"
+    if ending is None:
+        is_one = own in OTHER_STILLS or (own not in OTHER_FILMS and is_still(name))
+        ending = ".png" if is_one else ".mp4"
+    return place / f"{name.stem}{ending}"
+
+
+def is_still(source: Path) -> bool:
+    """Whether a source is a still; it is looked into.
+
+    Args:
+        source: A file; what cannot be read is none.
+    """
+    if not source.is_file():
+        return False
+    from stages.media import probe
+
+    try:
+        return probe(source).kind == "image"
+    except TrimotionError:
+        return False  # whoever opens it says what is wrong

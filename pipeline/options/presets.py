@@ -4,8 +4,7 @@ import tomllib
 from pathlib import Path
 
 from pipeline.options.command_line import job_options
-from pipeline.options.option_value import option_value
-from pipeline.options.text_file import read_text
+from stages.media.text_file import read_text
 from warp_kernels.errors import OptionError
 
 SHIPPED = Path(__file__).parents[1] / "presets"
@@ -18,13 +17,7 @@ def shipped_presets() -> list[str]:
 
 
 def read_preset(name: str) -> dict[str, object]:
-    """Read a preset.
-
-    Args:
-        name: A TOML file, or the name of a shipped preset.
-
-    Returns:
-        Values by field name, as the command line would give them.
+    """Read a preset, a TOML file or the name of a shipped one: values by field name.
 
     Raises:
         OptionError: If it cannot be read, or holds anything that is not an option.
@@ -47,5 +40,5 @@ def read_preset(name: str) -> dict[str, object]:
             raise OptionError(
                 f"--preset {name}: unknown option {key!r}; the options are {', '.join(options)}"
             )
-        values[option.dest] = option_value(option, value, f"--preset {name}: {key}")
+        values[option.dest] = option.value(value, f"--preset {name}: {key}")
     return values

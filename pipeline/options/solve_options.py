@@ -6,15 +6,16 @@ A track stores these options, and `--resume` and `join` compare them.
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from stages.flows import Flow
+from stages.flows import FLOWS, Flow
 from stages.flows.dis import Dis
-from stages.focus import Focus, resolved
+from stages.focus import FOCI, Focus, resolved
 from stages.focus.picture import Picture
-from stages.layouts import Layout
+from stages.layouts import LAYOUTS, Layout
 from stages.layouts.importance import Importance
-from stages.media import FrameRange, ReadOptions
-from stages.triangulate import TriangulateOptions
-from warp_kernels.energy.color_model import ColorModel
+from stages.media.frame_range import FrameRange
+from stages.media.reading.read_options import ReadOptions
+from stages.triangulate_options import TriangulateOptions
+from warp_kernels.color_model import ColorModel
 from warp_kernels.errors import OptionError
 
 
@@ -38,7 +39,7 @@ class SolveOptions:
         default_factory=Importance,
         metadata={
             "help": "first mesh of a shot; importance takes a grey picture: importance:MAP.png",
-            "registry": "stages.layouts:LAYOUTS",
+            "registry": LAYOUTS,
         },
     )
     """Makes the first mesh of a shot."""
@@ -46,7 +47,7 @@ class SolveOptions:
         default_factory=Dis,
         metadata={
             "help": "how motion between frames is estimated",
-            "registry": "stages.flows:FLOWS",
+            "registry": FLOWS,
             "group": "motion",
         },
     )
@@ -66,7 +67,7 @@ class SolveOptions:
             "help": "where errors count more, repeatable, what several add is summed: faces, "
             "saliency, motion, center, picture:FILE (as --weights), none for nowhere, auto for "
             "faces where there are any (default: auto)",
-            "registry": "stages.focus:FOCI",
+            "registry": FOCI,
         },
     )
     """Where errors count more; empty for `auto`, or for nothing beside `weights`."""

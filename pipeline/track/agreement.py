@@ -4,7 +4,6 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from pipeline.options.command_line import Option, job_options
-from pipeline.options.declared import registry_classes
 from pipeline.track.plain_values import CLASS
 
 FREE = frozenset({"source", "frame_range"})
@@ -35,25 +34,16 @@ def _differing(
             yield from _differing(one, other, options)
         else:
             flag = f"--{option.flag}" if option is not None else name
-            names = _names(option)
-            yield f"{flag} {_shown(other, names)} instead of {_shown(one, names)}"
+            yield f"{flag} {_shown(other)} instead of {_shown(one)}"
 
 
-def _names(option: Option | None) -> dict[str, str]:
-    """Names of the members of an option's registry, by the names of their classes."""
-    registry = None if option is None else option.declared.metadata.get("registry")
-    members = {} if registry is None else registry_classes(registry)
-    return {cls: name for name, cls in members.items()}
-
-
-def _shown(value: Any, names: Mapping[str, str]) -> str:
+def _shown(value: Any) -> str:
     """A value as short as a message needs it, as the command line takes it."""
     if isinstance(value, Mapping) and CLASS in value:
-        pairs = (f"{key}={_shown(entry, {})}" for key, entry in value.items() if key != CLASS)
-        name = str(value[CLASS])
-        return ":".join(filter(None, (names.get(name, name.lower()), ",".join(pairs))))
-    if isinstance(value, list) and names:
-        return " ".join(_shown(entry, names) for entry in value) or "auto"
+        pairs = (f"{key}={_shown(entry)}" for key, entry in value.items() if key != CLASS)
+        return ":".join(filter(None, (str(value[CLASS]), ",".join(pairs))))
+    if value == [] or (isinstance(value, list) and isinstance(value[0], Mapping)):
+        return " ".join(map(_shown, value)) or "auto"
     if isinstance(value, Mapping):
         return "(a picture)"
     text = "none" if value is None else str(value)

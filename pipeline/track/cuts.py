@@ -3,7 +3,7 @@
 import json
 from pathlib import Path
 
-from pipeline.options.text_file import read_text
+from stages.media.text_file import read_text
 from warp_kernels.errors import MediaError
 
 

@@ -16,9 +16,9 @@ from pipeline.track.identity import SourceIdentity, identity_of
 from pipeline.track.plain_values import UnknownNameError, from_plain, to_plain
 from pipeline.version import library_versions, program_version
 from stages.media import FrameRange, MediaInfo
-from warp_kernels.energy.color_model import COLOR_MODELS, ColorModel
+from warp_kernels.color_model import COLOR_MODELS, ColorModel
 from warp_kernels.errors import OptionError, TrackError
-from warp_kernels.raster import MAX_SIDE
+from warp_kernels.limits import MAX_SIDE
 
 KEYS = frozenset({"program", "libraries", "options", "source", "info", "model", "finished"})
 """What a header holds."""

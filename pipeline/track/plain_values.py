@@ -1,14 +1,14 @@
 """Dataclasses as plain values for JSON, field by field, and back.
 
 A new option is carried along without a change here: its type and, for a member of a registry,
-the registry that its field names decide how it is read. Nothing that a file says is imported,
-called or unpickled: classes come from the annotations and registries of the program itself, every
-value is of the annotated type, and an array is not unpacked beyond the shape that it declares.
+the registry of its field decide how it is read. A member is stored under its name in the registry.
+Nothing that a file says is imported, called or unpickled: classes come from the annotations and
+registries of the program itself, every value is of the annotated type, and an array is not unpacked
+beyond the shape that it declares.
 """
 
 import base64
 import dataclasses
-import importlib
 import math
 import re
 import reprlib
@@ -22,8 +22,11 @@ from typing import Any
 
 import numpy as np
 
+from warp_kernels.errors import OptionError
+from warp_kernels.registry import Registry
+
 CLASS = "class"
-"""Key under which a dataclass's name is kept."""
+"""Key under which a dataclass's name is kept, or a member's in its registry."""
 GONE: frozenset[str] = frozenset()
 """Fields that earlier versions wrote and this one does not know any more: they are passed over."""
 MOST_BYTES = 1 << 30
@@ -35,20 +38,25 @@ class UnknownNameError(ValueError):
     """A class or a field that this program does not have: another version wrote it."""
 
 
-def to_plain(value: Any) -> Any:
+def to_plain(value: Any, registry: Registry[Any] | None = None) -> Any:
     """Plain values that stand for a value.
 
     Args:
         value: A dataclass, an array, a tuple, a path, a fraction or something plain.
+        registry: The registry of which it is a member, or of which all in a tuple are.
     """
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
-        inside = {f.name: to_plain(getattr(value, f.name)) for f in _fields(type(value))}
-        return {CLASS: type(value).__name__, **inside}
+        cls = type(value)
+        inside = {
+            f.name: to_plain(getattr(value, f.name), f.metadata.get("registry"))
+            for f in _fields(cls)
+        }
+        return {CLASS: cls.__name__ if registry is None else registry.name_of(cls), **inside}
     if isinstance(value, np.ndarray):
         packed = base64.b64encode(zlib.compress(np.ascontiguousarray(value).tobytes()))
         return {"dtype": value.dtype.str, "shape": list(value.shape), "data": packed.decode()}
     if isinstance(value, tuple | list):
-        return [to_plain(entry) for entry in value]
+        return [to_plain(entry, registry) for entry in value]
     return str(value) if isinstance(value, Path | Fraction) else value
 
 
@@ -75,9 +83,9 @@ def from_plain(cls: type, plain: Any, *, arrays: bool = True) -> Any:
     for name in plain:
         if name not in fields and name != CLASS and name not in GONE:
             raise UnknownNameError(f"the field {reprlib.repr(name)} of {cls.__name__}")
-    hints = typing.get_type_hints(cls)
+    hints = typing.get_type_hints(cls, None, {"np": np})  # which light modules do not import
     values = {}
-    for name in fields.keys() & plain.keys():
+    for name in (name for name in fields if name in plain):
         registry = fields[name].metadata.get("registry")
         try:
             values[name] = _value(hints[name], plain[name], registry, arrays)
@@ -92,7 +100,7 @@ def _fields(cls: Any) -> list[dataclasses.Field[Any]]:
     return [field for field in dataclasses.fields(cls) if field.init]
 
 
-def _value(hint: Any, plain: Any, registry: str | None, arrays: bool) -> Any:
+def _value(hint: Any, plain: Any, registry: Registry[Any] | None, arrays: bool) -> Any:
     """A value of an annotated type."""
     if isinstance(hint, types.UnionType):
         if plain is None:
@@ -101,7 +109,7 @@ def _value(hint: Any, plain: Any, registry: str | None, arrays: bool) -> Any:
     if typing.get_origin(hint) is tuple:
         return _several(typing.get_args(hint), plain, registry, arrays)
     if registry is not None:
-        return from_plain(_member(registry, plain), plain, arrays=arrays)
+        return _member(registry, plain, arrays)
     if dataclasses.is_dataclass(hint):
         return from_plain(hint, plain, arrays=arrays)  # type: ignore[arg-type]
     if hint is np.ndarray:
@@ -109,7 +117,9 @@ def _value(hint: Any, plain: Any, registry: str | None, arrays: bool) -> Any:
     return _single(hint, plain)
 
 
-def _several(kinds: tuple[Any, ...], plain: Any, registry: str | None, arrays: bool) -> Any:
+def _several(
+    kinds: tuple[Any, ...], plain: Any, registry: Registry[Any] | None, arrays: bool
+) -> Any:
     """A tuple: of any length if its kinds end in an ellipsis."""
     is_open = kinds[-1] is Ellipsis
     if not isinstance(plain, list) or not (is_open or len(plain) == len(kinds)):
@@ -155,12 +165,15 @@ def _array(plain: Any, *, unpacked: bool) -> np.ndarray | None:
     return np.frombuffer(content, dtype=kind).reshape(sides)
 
 
-def _member(registry: str, plain: Any) -> type:
-    """The class of a registry that plain values name."""
-    name = plain.get(CLASS) if isinstance(plain, Mapping) else plain
-    module, _, table = registry.partition(":")
-    for member in getattr(importlib.import_module(module), table).values():
-        if member.__name__ == name:
-            found: type = member
-            return found
-    raise UnknownNameError(f"the class {reprlib.repr(name)} in {table}")
+def _member(registry: Registry[Any], plain: Any, arrays: bool) -> Any:
+    """The member of a registry that plain values name."""
+    if not isinstance(plain, Mapping):
+        raise ValueError(f"{reprlib.repr(plain)} stands for no such thing")
+    name = plain.get(CLASS)
+    try:
+        cls = registry[name] if isinstance(name, str) and name in registry else None
+    except OptionError as error:  # of a package that does not work here
+        raise UnknownNameError(str(error)) from error
+    if cls is None:
+        raise UnknownNameError(f"the member {reprlib.repr(name)} of {registry}")
+    return from_plain(cls, {k: v for k, v in plain.items() if k != CLASS}, arrays=arrays)

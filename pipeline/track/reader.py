@@ -26,7 +26,7 @@ from stages.mesh import Mesh
 from stages.snapshot import Snapshot
 from stages.solve.color_owners import color_owners
 from stages.validate import assert_finite, assert_sound
-from warp_kernels.energy.color_model import CHANNELS
+from warp_kernels.color_model import CHANNELS
 from warp_kernels.errors import TrackError
 
 LAST = 1 << 53

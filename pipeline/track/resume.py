@@ -15,7 +15,7 @@ from stages.media import FrameRange, MediaInfo
 from stages.media.writing.commit import output_error, remove_left_overs, true_place
 from stages.snapshot import Snapshot
 from stages.validate import InvalidMeshError, assert_valid
-from warp_kernels.energy.color_model import ColorModel
+from warp_kernels.color_model import ColorModel
 from warp_kernels.errors import OptionError, OutputError, TrackError
 
 

@@ -1,9 +1,11 @@
 """No flow: every frame starts from the previous mesh as it is."""
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from stages.flows.field import FlowField
-from stages.flows.view import View
+if TYPE_CHECKING:
+    from stages.flows.field import FlowField
+    from stages.flows.view import View
 
 
 @dataclass(frozen=True)
@@ -13,6 +15,8 @@ class NoFlow:
     Source: Lawonn & Guenther, Stylized Image Triangulation (2018), Sec. 6.3.
     """
 
-    def estimate(self, previous: View, current: View) -> FlowField:
+    def estimate(self, previous: "View", current: "View") -> "FlowField":
         """Return no motion, whatever the pictures show."""
+        from stages.flows.field import FlowField
+
         return FlowField.still(current.width, current.height)

@@ -1,7 +1,8 @@
 """Where errors count more: `FOCI` names the members for the command line.
 
-A focus is a frozen dataclass of parameters, `strength` among them; a new one is a file and a line
-here. What it does is one of these:
+A focus is a frozen dataclass of parameters, `strength` among them, whose methods import what they
+need: the help reads the parameters of all. A new one is a file and a line here, or a package of its
+own. What it does is one of these:
 
 - `glance(before, frame)`: a map of what counts in one picture; over time it is smoothed by others.
 - `Faces` and `Auto` search for faces, which are followed over time.
@@ -10,18 +11,18 @@ here. What it does is one of these:
 
 from collections.abc import Iterable
 from dataclasses import fields
-from typing import Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
-import numpy as np
-
-from stages.focus.center import Center
-from stages.focus.faces import Auto, Faces
-from stages.focus.motion import Motion
+from stages.focus.faces import Auto
 from stages.focus.none import NoFocus
 from stages.focus.picture import Picture
-from stages.focus.saliency import Saliency
-from stages.frame import Frame
 from warp_kernels.errors import OptionError
+from warp_kernels.registry import Registry
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from stages.frame import Frame
 
 
 class Focus(Protocol):
@@ -42,7 +43,7 @@ class Glance(Protocol):
         """How much it adds, 0 for nothing, 1 for what is usual."""
         ...
 
-    def glance(self, before: Frame | None, frame: Frame) -> np.ndarray:
+    def glance(self, before: "Frame | None", frame: "Frame") -> "np.ndarray":
         """What counts in a picture, [h, w] float32 of any size, 0 to 1.
 
         `before` is the frame before in the same shot, or None.
@@ -50,15 +51,19 @@ class Glance(Protocol):
         ...
 
 
-FOCI: dict[str, type[Focus]] = {
-    "auto": Auto,
-    "none": NoFocus,
-    "faces": Faces,
-    "saliency": Saliency,
-    "motion": Motion,
-    "center": Center,
-    "picture": Picture,
-}
+FOCI: Registry[Focus] = Registry(
+    "foci",
+    {
+        "auto": "stages.focus.faces:Auto",
+        "none": "stages.focus.none:NoFocus",
+        "faces": "stages.focus.faces:Faces",
+        "saliency": "stages.focus.saliency:Saliency",
+        "motion": "stages.focus.motion:Motion",
+        "center": "stages.focus.center:Center",
+        "picture": "stages.focus.picture:Picture",
+    },
+    method="glance",
+)
 
 
 def resolved(given: Iterable[Focus], weights: str | None) -> tuple[Focus, ...]:
@@ -87,10 +92,9 @@ def spelled(members: Iterable[Focus]) -> str:
     Args:
         members: The members.
     """
-    names = {cls: name for name, cls in FOCI.items()}
     texts = []
     for member in members:
         usual = {field.name: field.default for field in fields(member)}  # type: ignore[arg-type]
         told = [f"{n}={getattr(member, n)}" for n in usual if getattr(member, n) != usual[n]]
-        texts.append(":".join(filter(None, [names[type(member)], ",".join(told)])))
+        texts.append(":".join(filter(None, [FOCI.name_of(type(member)), ",".join(told)])))
     return " ".join(texts) or "none"

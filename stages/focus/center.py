@@ -1,12 +1,15 @@
 """The middle of the picture."""
 
 from dataclasses import dataclass, field
-
-import numpy as np
+from typing import TYPE_CHECKING
 
 from stages.focus.strength import Strength
-from stages.frame import Frame
 from warp_kernels.errors import OptionError
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from stages.frame import Frame
 
 LINES = 64
 """Size of the map, whatever the picture's."""
@@ -34,7 +37,7 @@ class Center(Strength):
         if not 0.02 <= self.size <= 2.0:
             raise OptionError(f"size {self.size:g}: must lie between 0.02 and 2; try 0.25")
 
-    def glance(self, before: Frame | None, frame: Frame) -> np.ndarray:
+    def glance(self, before: "Frame | None", frame: "Frame") -> "np.ndarray":
         """A bump in the middle.
 
         Args:
@@ -44,6 +47,8 @@ class Center(Strength):
         Returns:
             [h, w] float32.
         """
+        import numpy as np
+
         places = (np.arange(LINES, dtype=np.float32) + 0.5) / LINES - 0.5
         falling = np.exp(-0.5 * (places / np.float32(self.size)) ** 2)
         return np.outer(falling, falling).astype(np.float32)

@@ -1,22 +1,15 @@
 """What moves in another way than the picture as a whole."""
 
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
-import cv2
-import numpy as np
-
-from stages.flows.dis import Dis
-from stages.flows.view import View
 from stages.focus.strength import Strength
-from stages.frame import Frame
 from warp_kernels.errors import OptionError
 
-LINES = 96
-"""Short side of the copies that motion is looked for in [px]."""
-BLUR = 2.0
-"""Standard deviation of the blur of the map [px of those copies]."""
-STILL = 0.0008
-"""Motion beside that of the whole up to this is noise [short sides a frame]."""
+if TYPE_CHECKING:
+    import numpy as np
+
+    from stages.frame import Frame
 
 
 @dataclass(frozen=True)
@@ -42,7 +35,7 @@ class Motion(Strength):
         if not 0.001 <= self.speed <= 0.2:
             raise OptionError(f"speed {self.speed:g}: must lie between 0.001 and 0.2; try 0.008")
 
-    def glance(self, before: Frame | None, frame: Frame) -> np.ndarray:
+    def glance(self, before: "Frame | None", frame: "Frame") -> "np.ndarray":
         """Motion from the frame before, beside the dominant one.
 
         Args:
@@ -52,33 +45,6 @@ class Motion(Strength):
         Returns:
             [h, w] float32, 0 to 1.
         """
-        if before is None or np.array_equal(before.pixels, frame.pixels):
-            return np.zeros((1, 1), dtype=np.float32)
-        flow = Dis(lines=LINES, preset="medium").estimate(View(before.pixels), View(frame.pixels))
-        own = flow.vectors - dominant(flow.vectors)
-        speed = np.hypot(own[..., 0], own[..., 1]) / min(frame.width, frame.height)
-        share = np.clip((speed - STILL) / max(self.speed - STILL, 1e-9), 0.0, 1.0)
-        return cv2.GaussianBlur(share.astype(np.float32), (0, 0), BLUR)
+        from stages.focus.own_motion import own_motion
 
-
-def dominant(vectors: np.ndarray) -> np.ndarray:
-    """The motion of the whole: an affine one that most places follow.
-
-    Args:
-        vectors: Motion, [h, w, 2].
-
-    Returns:
-        The dominant motion at the same places, [h, w, 2].
-    """
-    height, width = vectors.shape[:2]
-    y, x = np.mgrid[-1.0 : 1.0 : height * 1j, -1.0 : 1.0 : width * 1j].reshape(2, -1)
-    terms = np.stack([np.ones_like(x), x, y], axis=1)
-    wanted = vectors.reshape(-1, 2).astype(np.float64)
-    left = np.full(len(x), True)
-    fitted = np.median(wanted, axis=0) + np.zeros_like(wanted)
-    for _ in range(3):  # from the median on, places that go with it decide alone
-        misfit = np.hypot(*(wanted - fitted).T)
-        left = misfit <= max(1.5 * float(np.median(misfit)), 1e-3)
-        fit, *_ = np.linalg.lstsq(terms[left], wanted[left], rcond=None)
-        fitted = terms @ fit
-    return fitted.reshape(vectors.shape)
+        return own_motion(before, frame, self.speed)

@@ -1,12 +1,14 @@
 """What stands out of a still picture."""
 
 from dataclasses import dataclass
-
-import cv2
-import numpy as np
+from typing import TYPE_CHECKING
 
 from stages.focus.strength import Strength
-from stages.frame import Frame
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from stages.frame import Frame
 
 LINES = 64
 """Size of the copy that is looked at [px]: what stands out does so from afar."""
@@ -23,7 +25,7 @@ class Saliency(Strength):
     Source: Hou & Zhang, Saliency Detection: A Spectral Residual Approach (2007).
     """
 
-    def glance(self, before: Frame | None, frame: Frame) -> np.ndarray:
+    def glance(self, before: "Frame | None", frame: "Frame") -> "np.ndarray":
         """Spectral residual of the picture.
 
         Args:
@@ -33,6 +35,9 @@ class Saliency(Strength):
         Returns:
             [h, w] float32, 0 to 1.
         """
+        import cv2
+        import numpy as np
+
         grey = cv2.cvtColor(frame.pixels, cv2.COLOR_RGB2GRAY)
         copy = cv2.resize(grey, (LINES, LINES), interpolation=cv2.INTER_AREA).astype(np.float32)
         spectrum = np.fft.fft2(copy)

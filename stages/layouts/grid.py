@@ -1,10 +1,13 @@
 """The regular layout: nearly square cells, each cut from bottom left to top right."""
 
 from dataclasses import dataclass
+from math import sqrt
+from typing import TYPE_CHECKING
 
-import numpy as np
+if TYPE_CHECKING:
+    import numpy as np
 
-from stages.mesh import Mesh, mesh_of
+    from stages.mesh import Mesh
 
 
 @dataclass(frozen=True)
@@ -14,7 +17,9 @@ class Grid:
     Source: Lawonn & Guenther, Stylized Image Triangulation (2018), Sec. 3.3.
     """
 
-    def build(self, pixels: np.ndarray, triangle_count: int, rng: np.random.Generator) -> Mesh:
+    def build(
+        self, pixels: "np.ndarray", triangle_count: int, rng: "np.random.Generator"
+    ) -> "Mesh":
         """Lay the grid over a picture; base edges are horizontal.
 
         Args:
@@ -22,6 +27,10 @@ class Grid:
             triangle_count: Wanted number of triangles; no cell is smaller than a pixel.
             rng: Not used.
         """
+        import numpy as np
+
+        from stages.mesh import mesh_of
+
         height, width = pixels.shape[:2]
         columns, rows = _cells(width, height, triangle_count)
         x, y = np.meshgrid(np.linspace(0, width, columns + 1), np.linspace(0, height, rows + 1))
@@ -37,6 +46,6 @@ class Grid:
 def _cells(width: int, height: int, triangle_count: int) -> tuple[int, int]:
     """Columns and rows of nearly square cells, two triangles each."""
     cells = max(triangle_count / 2, 1)
-    rows = int(np.clip(round(np.sqrt(cells * height / width)), 1, height))
-    columns = int(np.clip(round(cells / rows), 1, width))
+    rows = min(max(round(sqrt(cells * height / width)), 1), height)
+    columns = min(max(round(cells / rows), 1), width)
     return columns, rows

@@ -2,28 +2,13 @@
 
 from dataclasses import dataclass
 from fractions import Fraction
-
-import numpy as np
+from typing import TYPE_CHECKING
 
 from warp_kernels.errors import OptionError
-from warp_kernels.raster import MAX_SIDE
+from warp_kernels.limits import MAX_SIDE
 
-FITS = ("contain", "cover", "stretch")
-"""How a picture gets into another shape: whole, with bars; filling it, cut off; or drawn over all
-of it with pixels that are no squares, by which players give it its shape back."""
-NAMED_SIZES = {
-    "square": (1080, 1080),
-    "portrait": (1080, 1350),
-    "story": (1080, 1920),
-    "720p": (1280, 720),
-    "1080p": (1920, 1080),
-    "1440p": (2560, 1440),
-    "4k": (3840, 2160),
-}
-"""Sizes of the places that people post to [px]."""
-
-Size = tuple[int | None, int | None]
-"""Width and height [px]; None for a side that follows from the other one."""
+if TYPE_CHECKING:
+    import numpy as np
 
 
 @dataclass(frozen=True)
@@ -50,7 +35,7 @@ class Framing:
 
 
 def framing_of(
-    source: tuple[int, int], sample_aspect: Fraction, size: Size | None, fit: str
+    source: tuple[int, int], sample_aspect: Fraction, size: tuple[int, int] | None, fit: str
 ) -> Framing:
     """Decide where a picture lies.
 
@@ -60,8 +45,11 @@ def framing_of(
     Args:
         source: Width and height of the source, upright [px].
         sample_aspect: Width of its pixels over their height.
-        size: Size of the output; None for the source's, whose pixels stay as they are.
-        fit: One of `FITS`.
+        size: Width and height of the output [px], 0 for one that follows from the other; None for
+            the source's size, whose pixels stay as they are.
+        fit: `contain` shows the whole picture, with bars; `cover` fills the output and cuts off;
+            `stretch` fills it with pixels that are no squares, by which players give the picture
+            its shape back.
 
     Raises:
         OptionError: If the picture would be too large or have no pixel.
@@ -69,10 +57,10 @@ def framing_of(
     if size is None:
         return Framing(source, source, None)
     shape = Fraction(source[0]) * sample_aspect / source[1]
-    if size[0] is None or size[1] is None:
+    if 0 in size:
         canvas = _completed(size, shape)
         return Framing(canvas, canvas, Fraction(1))
-    width, height = canvas = (size[0], size[1])
+    width, height = canvas = size
     if fit == "stretch":
         return Framing(canvas, canvas, None)
     by_width, by_height = (width, round(width / shape)), (round(height * shape), height)
@@ -85,8 +73,8 @@ def framing_of(
 
 
 def framed(
-    pixels: np.ndarray, framing: Framing, background: tuple[float, float, float] | None
-) -> np.ndarray:
+    pixels: "np.ndarray", framing: Framing, background: tuple[float, float, float] | None
+) -> "np.ndarray":
     """Put a picture on its canvas.
 
     Args:
@@ -98,6 +86,8 @@ def framed(
     Returns:
         Code values, [rows, columns, 3] uint8, or 4 channels if something is transparent.
     """
+    import numpy as np
+
     if background is not None and pixels.shape[2] == 4:
         pixels = _over(pixels, background)
     if framing.is_plain:
@@ -114,20 +104,22 @@ def framed(
     return canvas
 
 
-def _over(rgba: np.ndarray, background: tuple[float, float, float]) -> np.ndarray:
+def _over(rgba: "np.ndarray", background: tuple[float, float, float]) -> "np.ndarray":
     """A picture over one colour, [H, W, 3] uint8."""
+    import numpy as np
+
     alpha = rgba[..., 3:].astype(np.uint32)
     mixed = rgba[..., :3] * alpha + np.rint(background).astype(np.uint32) * (255 - alpha)
     return ((mixed + 127) // 255).astype(np.uint8)
 
 
-def _completed(size: Size, shape: Fraction) -> tuple[int, int]:
+def _completed(size: tuple[int, int], shape: Fraction) -> tuple[int, int]:
     """A size with the side that follows from the other one.
 
     It is even if the given one is: most videos need that, and nobody sees the difference.
     """
     width, height = size
-    given = width or height or 1
+    given = width or height
     exact = given / shape if width else given * shape
     other = 2 * round(exact / 2) if given % 2 == 0 else round(exact)
     found = (given, other) if width else (other, given)

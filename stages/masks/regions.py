@@ -1,31 +1,17 @@
 """Styles inside of masks."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
 
 import numpy as np
 
 from stages.frame import Frame
 from stages.masks.gray import gray_of
+from stages.masks.region import Region
 from stages.media import Decoder, FrameRange, input_pattern, open_decoder, probe
 from warp_kernels.errors import MediaError, OptionError
-from warp_kernels.styles import Style
 
 BLACK = 0
 """Grey behind transparent parts of a mask: nothing was painted there."""
-
-
-@dataclass(frozen=True)
-class Region:
-    """A style and where it is drawn."""
-
-    mask: str
-    """A still, a video or numbered stills of the source's size: white where the style is."""
-    style: Style = field(metadata={"registry": "warp_kernels.styles:STYLES"})
-    """The style."""
-    frames: tuple[int, ...] = ()
-    """Numbers of the frames for which the mask was drawn, ascending: the triangles that it shows
-    there carry the style through their shot. Empty if the mask does not follow them."""
 
 
 class Mask:

@@ -6,7 +6,7 @@ out, not followed.
 
 from stages.metrics.drift import Drift, drift, jitter
 from stages.metrics.mesh_changes import MeshChanges, mesh_changes
-from stages.metrics.motion import Motion
+from stages.metrics.motion import SourceMotion
 from stages.metrics.motion_difference import motion_difference
 from stages.metrics.pop_energy import pop_energy
 from stages.metrics.signature import Signature, change, likeness, signature
@@ -15,8 +15,8 @@ from stages.metrics.warp_error import warp_error
 __all__ = [
     "Drift",
     "MeshChanges",
-    "Motion",
     "Signature",
+    "SourceMotion",
     "change",
     "drift",
     "jitter",

@@ -16,7 +16,7 @@ REFERENCE_FLOW = Dis(lines=360, preset="fine")
 
 
 @dataclass(frozen=True, eq=False)
-class Motion:
+class SourceMotion:
     """How a source moves from an earlier to a later frame."""
 
     forward: FlowField
@@ -25,7 +25,7 @@ class Motion:
     """Motion from the later to the earlier frame."""
 
     @classmethod
-    def between(cls, earlier: np.ndarray, later: np.ndarray) -> "Motion":
+    def between(cls, earlier: np.ndarray, later: np.ndarray) -> "SourceMotion":
         """Estimate it.
 
         Args:

@@ -4,7 +4,7 @@ import numpy as np
 
 from stages.flows.field import FlowField
 from stages.metrics.locate import locate
-from stages.metrics.motion import Motion
+from stages.metrics.motion import SourceMotion
 from stages.metrics.numbering import keys_of, numbers_of
 from stages.snapshot import Snapshot, colors_at
 
@@ -12,7 +12,7 @@ WHITE = 255.0
 """Code value of the colour 1."""
 
 
-def pop_energy(before: Snapshot, after: Snapshot, motion: Motion) -> float:
+def pop_energy(before: Snapshot, after: Snapshot, motion: SourceMotion) -> float:
     """Area times squared change of colour of the triangles that come and go.
 
     A triangle is its three vertices: splits, collapses and flips all exchange triangles. One that

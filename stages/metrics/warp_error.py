@@ -2,15 +2,15 @@
 
 import numpy as np
 
-from stages.metrics.motion import Motion
+from stages.metrics.motion import SourceMotion
 from stages.metrics.warp import warped
-from warp_kernels.energy.color_model import CHANNELS
+from warp_kernels.color_model import CHANNELS
 
 WHITE = 255.0
 """Code value of the colour 1."""
 
 
-def warp_error(earlier: np.ndarray, later: np.ndarray, motion: Motion) -> float | None:
+def warp_error(earlier: np.ndarray, later: np.ndarray, motion: SourceMotion) -> float | None:
     """Mean squared difference between a picture and a later one brought back to it.
 
     Args:

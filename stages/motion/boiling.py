@@ -1,6 +1,6 @@
 """Where a picture boils: it changes without a motion, so that following its mesh does not pay."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -102,6 +102,14 @@ class Unrest:
             mesh: The mesh after any edits.
         """
         return Unrest(mesh.vertex_ids, self.at(mesh))
+
+    def freed(self, carried: Carried) -> Carried:
+        """A mesh as it came along, with springs that let go where it boils.
+
+        Args:
+            carried: The mesh that was compared.
+        """
+        return replace(carried, trust=carried.trust * (1.0 - self.values))
 
     def calm(self, mesh: Mesh) -> np.ndarray:
         """How calm it is at the calmest corner of each triangle [0..1], shape [T].

@@ -6,13 +6,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from stages.mesh import Mesh
-from stages.optimize import OptimizeOptions, load_mesh, optimize
+from stages.optimize import load_mesh, optimize
+from stages.optimize_options import OptimizeOptions
 from stages.solve.convergence import Convergence
 from stages.solve.mend import divide_torn
-from stages.topology import Goal, Topology
+from stages.topology import Topology
 from stages.topology.appraise import Appraiser
 from stages.topology.area_limit import divide_large
 from stages.topology.exact_count import with_exactly
+from stages.topology.goal import Goal
 from stages.topology.growth import Growth
 from warp_kernels.energy.workspace import Workspace
 

@@ -9,8 +9,8 @@ import numpy as np
 
 from stages.mesh import Mesh, centres_of
 from stages.snapshot import with_origins
+from warp_kernels.color_model import CHANNELS, ColorModel
 from warp_kernels.energy.color_extremes import BRIGHTEST, DARKEST, Extremes
-from warp_kernels.energy.color_model import CHANNELS, ColorModel
 from warp_kernels.energy.nearby_colors import Departures, Nearby
 from warp_kernels.energy.workspace import Workspace
 

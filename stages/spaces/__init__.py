@@ -7,13 +7,12 @@ those of the picture, so every sum stays exact and every bound of the kernels ho
 are drawn are fitted in RGB whatever the space. A new space is a file and a line here.
 """
 
-from typing import ClassVar, Protocol
+from typing import TYPE_CHECKING, ClassVar, Protocol
 
-import numpy as np
+from warp_kernels.registry import Registry
 
-from stages.spaces.luma import Luma
-from stages.spaces.oklab import Oklab
-from stages.spaces.rgb import Rgb
+if TYPE_CHECKING:
+    import numpy as np
 
 
 class Space(Protocol):
@@ -22,13 +21,16 @@ class Space(Protocol):
     scale: ClassVar[float]
     """Energy of an error in this space over that of the same error in RGB, typically [1]."""
 
-    def convert(self, pixels: np.ndarray) -> np.ndarray:
+    def convert(self, pixels: "np.ndarray") -> "np.ndarray":
         """Turn a picture into code values of the space, both [H, W, 3] uint8."""
         ...
 
 
-SPACES: dict[str, type[Space]] = {
-    "rgb": Rgb,
-    "oklab": Oklab,
-    "luma": Luma,
-}
+SPACES: Registry[Space] = Registry(
+    "spaces",
+    {
+        "rgb": "stages.spaces.rgb:Rgb",
+        "oklab": "stages.spaces.oklab:Oklab",
+        "luma": "stages.spaces.luma:Luma",
+    },
+)

@@ -4,32 +4,31 @@ A topology is a frozen dataclass of parameters, two of them its `growth` and its
 method `adapt(mesh, appraiser, goal) -> Mesh`; a new one is a file and a line here.
 """
 
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
-from stages.mesh import Mesh
-from stages.topology.appraise import Appraiser
-from stages.topology.delaunay import Delaunay
-from stages.topology.energy import Energy
-from stages.topology.goal import Goal
-from stages.topology.growth import Growth
+from warp_kernels.registry import Registry
 
-__all__ = ["TOPOLOGIES", "Goal", "Topology"]
+if TYPE_CHECKING:
+    from stages.mesh import Mesh
+    from stages.topology.appraise import Appraiser
+    from stages.topology.goal import Goal
+    from stages.topology.growth import Growth
 
 
 class Topology(Protocol):
     """What every member of `TOPOLOGIES` can do."""
 
     @property
-    def growth(self) -> Growth:
+    def growth(self) -> "Growth":
         """How the number of triangles develops in a first frame."""
         ...
 
     @property
-    def renewal(self) -> Growth:
+    def renewal(self) -> "Growth":
         """How it develops in later frames, where the picture boils."""
         ...
 
-    def adapt(self, mesh: Mesh, appraiser: Appraiser, goal: Goal) -> Mesh:
+    def adapt(self, mesh: "Mesh", appraiser: "Appraiser", goal: "Goal") -> "Mesh":
         """Bring a mesh closer to a goal by edits.
 
         Vertices stay where they are, but for those that are pressed onto the border close by.
@@ -37,7 +36,10 @@ class Topology(Protocol):
         ...
 
 
-TOPOLOGIES: dict[str, type[Topology]] = {
-    "delaunay": Delaunay,
-    "energy": Energy,
-}
+TOPOLOGIES: Registry[Topology] = Registry(
+    "topologies",
+    {
+        "delaunay": "stages.topology.delaunay:Delaunay",
+        "energy": "stages.topology.energy:Energy",
+    },
+)

@@ -6,7 +6,7 @@ from fractions import Fraction
 import numpy as np
 
 from tests.oracles.coverage import Pixel
-from warp_kernels.energy.color_model import CHANNELS, ColorModel
+from warp_kernels.color_model import CHANNELS, ColorModel
 
 
 def best_fit(

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from tests.oracles.coverage import Pixel
-from warp_kernels.energy.color_model import CHANNELS, SQUARE, ColorModel
+from warp_kernels.color_model import CHANNELS, SQUARE, ColorModel
 
 
 def moments(

@@ -4,6 +4,10 @@ import ctypes
 
 import warp as wp
 
+from warp_kernels.device.exact import EXACT
+
+wp.set_module_options(EXACT)
+
 STRIDE = 16
 """Integers from one thread's counter to the next: a cache line, so that no two share one. One more
 counter, not zero, tells everybody to wait no longer."""

@@ -22,6 +22,7 @@ import warp as wp
 
 from warp_kernels.device.barrier import STRIDE, address_of_sleep, meet
 from warp_kernels.device.kernel_cache import settle_cache
+from warp_kernels.device.kernels import Kernels, Told, tell_nobody
 from warp_kernels.device.runtime import WARP, find_device, quiet, unused_card
 
 SMALLEST_PART = 16
@@ -100,13 +101,15 @@ class Device:
     Args:
         name: "auto" (CUDA if present), "cpu", or "cuda:N".
         threads: CPU threads; 0 for one per core. Results do not depend on it.
+        tell: Told how many kernels are compiled, and of how many, where some are missing.
 
     Raises:
         OptionError: If there is no such device.
     """
 
-    def __init__(self, name: str = "auto", threads: int = 0) -> None:
-        self.notes = settle_cache()
+    def __init__(self, name: str = "auto", threads: int = 0, tell: Told = tell_nobody) -> None:
+        with WARP:
+            self.notes = settle_cache()
         """Choices that were made, one sentence each."""
         self.warp = find_device(name)
         self.name = str(self.warp.alias)
@@ -114,16 +117,28 @@ class Device:
         if name == "auto" and not self.is_cuda:
             self.notes += unused_card()
         self.part_count = 1 if self.is_cuda else max(1, threads or os.cpu_count() or 1)
+        self._kernels = Kernels(self.warp, tell)
+        if self.part_count > 1:
+            self._kernels.expect([meet])
         self._is_closed = False
         self._team = self._new_team()
 
     def _new_team(self) -> "Team":
         """Threads that end when nobody refers to the device any more."""
         with WARP:
-            team = Team(self.warp, self.part_count)
+            team = Team(self.warp, self.part_count, self._kernels)
         # at exit threads that wait are no burden, and one that works must not lose its team
         weakref.finalize(self, team.dismiss).atexit = False
         return team
+
+    def expect(self, kernels: Sequence[Any]) -> None:
+        """Name kernels that will be recorded: they are compiled together with the next that is.
+
+        Args:
+            kernels: Those that take longest to compile first.
+        """
+        with WARP:
+            self._kernels.expect(kernels)
 
     def record(
         self,
@@ -136,7 +151,8 @@ class Device:
         flows_on: bool = False,
     ) -> Phase:
         """Record the launch of `kernel`, split over the threads; see `Phase`, also for its size."""
-        with WARP, quiet():  # compiles the kernel if it is new
+        with WARP, quiet():
+            self._kernels.make_ready(kernel)
             spans = [wp.zeros(1, dtype=wp.vec2i, device=self.warp) for _ in range(self.part_count)]
             parts = [
                 wp.launch(
@@ -244,24 +260,18 @@ class Team:
     Args:
         device: Warp's device.
         size: Threads, the calling one included.
+        kernels: Makes the kernel ready with which threads meet.
     """
 
-    def __init__(self, device: Any, size: int) -> None:
+    def __init__(self, device: Any, size: int, kernels: Kernels) -> None:
         self._device = device
         self._size = size
+        self._kernels = kernels
         self._graphs: dict[Any, Any] = {}
         self._job: tuple[list[Any], int] = ([], 0)
         self._meetings: list[Any] = []
-        pause = address_of_sleep()
-        with WARP, quiet():
+        with WARP:
             self._flags = wp.zeros((size + 1) * STRIDE, dtype=int, device=device)
-            if size > 1:
-                self._meetings = [
-                    wp.launch(
-                        meet, 1, [number, size, pause, self._flags], device=device, record_cmd=True
-                    )
-                    for number in range(size)
-                ]
         self._abandoned = False
         self._busy = [Lock() for _ in range(size)]
         self._starts = [_closed_lock() for _ in range(size)]
@@ -320,11 +330,29 @@ class Team:
     def _graphs_of(self, phases: Sequence[Phase]) -> list[Any]:
         key = tuple((id(phase), phase.shape) for phase in phases)
         if key not in self._graphs:
+            if self._size > 1 and not self._meetings:
+                self._meetings = self._recorded_meetings()
             if len(self._graphs) >= MOST_GRAPHS:
                 self._graphs.clear()
             graphs = [self._capture(phases, number) for number in range(self._size)]
             self._graphs[key] = (graphs, tuple(phases))  # the phases must outlive their ids
         return self._graphs[key][0]
+
+    def _recorded_meetings(self) -> list[Any]:
+        """The launch with which each thread waits for the others."""
+        pause = address_of_sleep()
+        with WARP, quiet():
+            self._kernels.make_ready(meet)
+            return [
+                wp.launch(
+                    meet,
+                    1,
+                    [number, self._size, pause, self._flags],
+                    device=self._device,
+                    record_cmd=True,
+                )
+                for number in range(self._size)
+            ]
 
     def _capture(self, phases: Sequence[Phase], number: int) -> Any:
         with WARP, quiet(), wp.ScopedCapture(device=self._device) as capture:

@@ -1,10 +1,23 @@
-"""Arithmetic that rounds alike everywhere: the options of every kernel with a module of its own.
+"""How kernels are compiled: arithmetic that rounds alike everywhere, and one set of flags.
 
 A kernel of `module="unique"` does not take over what its file sets for the file's module.
 """
 
 from typing import Any
 
-EXACT: dict[str, Any] = {"enable_backward": False, "fuse_fp": False}
+CPU_FLAGS = (
+    "-march=native -mprefer-vector-width=512 -mllvm=-inline-threshold=9000"
+    " -mllvm=-inline-cold-callsite-threshold=3000 -mllvm=-slp-recursion-max-depth=4"
+)
+"""Warp's own flags, and the widest registers that there are: sums and pixels fill them.
+
+The same for all kernels: the compiler reads Warp's headers once for every set of flags, which takes
+it longer than most kernels do."""
+
+EXACT: dict[str, Any] = {
+    "enable_backward": False,
+    "fuse_fp": False,
+    "cpu_compiler_flags": CPU_FLAGS,
+}
 """No derivatives, and no multiplication fused with an addition: it would round once, where a
 device without such an instruction rounds twice."""

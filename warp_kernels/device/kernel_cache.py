@@ -8,12 +8,10 @@ from functools import cache
 from pathlib import Path
 
 import warp as wp
-from warp._src.thirdparty import appdirs
 
+from warp_kernels.device.cache_place import VARIABLE, cache_place
 from warp_kernels.errors import TrimotionError
 
-VARIABLE = "WARP_CACHE_PATH"
-"""Environment variable that says where; processes that are started later look at it, too."""
 _ROOM = 8 * 2**20
 """Free space that the kernels of a run may take [bytes]."""
 
@@ -31,6 +29,8 @@ def settle_cache() -> tuple[str, ...]:
     place = _usual_place()
     try:
         _try_to_write(place)
+        if not wp.config.kernel_cache_dir:
+            wp.config.kernel_cache_dir = str(place.parent)
         return ()
     except OSError as error:
         reason = str(error.strerror or error).lower()
@@ -56,12 +56,9 @@ def _usual_place() -> Path:
     """Where Warp would store kernels."""
     if wp.config.kernel_cache_dir:
         return Path(wp.config.kernel_cache_dir)
-    named = os.environ.get(VARIABLE)
-    if named:
-        return Path(os.path.realpath(named)) / wp.config.version
-    os.environ.pop(VARIABLE, None)  # Warp would take an empty name for the current folder
-    cache = appdirs.user_cache_dir(appname="warp", appauthor="NVIDIA", version=wp.config.version)
-    return Path(cache)
+    if not os.environ.get(VARIABLE):
+        os.environ.pop(VARIABLE, None)  # Warp would take an empty name for the current folder
+    return cache_place() / wp.config.version
 
 
 def _try_to_write(place: Path) -> None:

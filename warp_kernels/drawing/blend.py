@@ -3,10 +3,7 @@
 Opacity mixes code values, as painting programs do: half of a colour looks like half of it.
 Coverage is a part of an area, so it mixes light: a line keeps its weight wherever it lies between
 two rows of pixels, where a mixture of code values would make dark lines thicker and thinner along
-their way, like a twisted rope. Light is taken as the square of a code value.
-
-Deviation: sRGB's transfer curve has a linear toe and an exponent of 2.4; with an exponent of 2 the
-half between black and white is code value 180 instead of 188, for a small part of the time.
+their way, like a twisted rope. What light is, `warp_kernels.scene.light` says.
 """
 
 from collections.abc import Callable
@@ -16,6 +13,7 @@ from typing import Any
 
 import warp as wp
 
+from warp_kernels.scene.light import to_code, to_light
 from warp_kernels.scene.scene import FIXED, FRACTION_BITS, Sample, Scene, StyleParameters
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
@@ -81,18 +79,6 @@ BLENDS: dict[str, Any] = {
 
 Source: W3C, Compositing and Blending Level 1, Sec. 10.1.
 """
-
-
-@wp.func
-def to_light(color: wp.vec3f) -> wp.vec3f:
-    """Code values as amounts of light."""
-    return wp.cw_mul(color, color)
-
-
-@wp.func
-def to_code(light: wp.vec3f) -> wp.vec3f:
-    """Amounts of light as code values."""
-    return wp.vec3f(wp.sqrt(light[0]), wp.sqrt(light[1]), wp.sqrt(light[2]))
 
 
 @wp.func

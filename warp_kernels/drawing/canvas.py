@@ -9,18 +9,18 @@ import warp as wp
 
 from warp_kernels.device.device import Device, Phase
 from warp_kernels.drawing.blend import Coat
-from warp_kernels.drawing.gbuffer import record_gbuffer
+from warp_kernels.drawing.gbuffer import fill_triangles, record_gbuffer
 from warp_kernels.drawing.layers import Layers, LayerTables
 from warp_kernels.drawing.paint import Paint, shapes_of
 from warp_kernels.drawing.sample_points import LIST, parts_of_a_pixel
-from warp_kernels.drawing.shade import record_shade
-from warp_kernels.drawing.triangle_setup import record_prepare
-from warp_kernels.raster import MAX_SIDE
+from warp_kernels.drawing.shade import record_shade, shade_kernel
+from warp_kernels.drawing.triangle_setup import prepare_kernel, record_prepare
+from warp_kernels.limits import MAX_SIDE
 from warp_kernels.scene.places import hashes_of, to_places
 from warp_kernels.scene.scene import FIXED, FRACTION_BITS, Numbers, Scene, StyleParameters
 from warp_kernels.scene.source_picture import reduced, step_for
 from warp_kernels.scene.stroke_lay import own_lay
-from warp_kernels.scene.texels import Texture, pack
+from warp_kernels.scene.texels import Texels, pack
 from warp_kernels.styles import Style
 
 SAMPLES = 3
@@ -51,7 +51,7 @@ class Canvas:
         output: tuple[int, int],
         styles: tuple[Style, ...],
         masked: tuple[Style, ...],
-        textures: list[Texture | None],
+        textures: list[Texels | None],
         followed: tuple[int, ...] = (),
     ) -> None:
         self.device = device
@@ -64,6 +64,7 @@ class Canvas:
         styles = (*styles, *masked)
         self._lays_strokes = any(style.lays_strokes for style in styles)
         self._prepares = {i: s.prepare for i, s in enumerate(styles) if s.prepare is not None}
+        device.expect(self._kernels(fades=False))
         width, height = output
         columns = width * self.samples
         self._band = max(1, min(height, BAND_SAMPLES // (columns * self.samples)))
@@ -78,6 +79,12 @@ class Canvas:
         self._steady = self._steady_scene(needs_source=any(s.needs_source for s in styles))
         self._parameters = self._parameters_of(styles, textures)
         self._allocate(vertices=512, triangles=1024, layers=1024, links=1)
+
+    def _kernels(self, *, fades: bool) -> list[Any]:
+        """What drawing a frame launches, those first that take longest to compile."""
+        shade = shade_kernel(self._coats, self.samples, fades)
+        preparing = (prepare_kernel(prepare) for prepare in self._prepares.values())
+        return [shade, *preparing, fill_triangles]
 
     def _steady_scene(self, *, needs_source: bool) -> dict[str, Any]:
         """The parts of a scene that are the same for all frames."""
@@ -98,7 +105,7 @@ class Canvas:
             "parts": self._filled(parts_of_a_pixel(self.samples, sample_size), int),
         }
 
-    def _parameters_of(self, styles: tuple[Style, ...], textures: list[Texture | None]) -> wp.array:
+    def _parameters_of(self, styles: tuple[Style, ...], textures: list[Texels | None]) -> wp.array:
         """What the styles were asked for; their textures become a part of the scene."""
         texels, levels, ranges = pack(textures)
         self._steady["texels"] = self._filled(texels, wp.uint8)
@@ -249,17 +256,24 @@ class Canvas:
         tables.links = self._empty(links, int)
         self._layers = tables
         self._recorded: dict[bool, list[tuple[int, Phase, Phase]]] = {}
-        self._preparing = [
-            record_prepare(
-                self.device,
-                prepare=prepare,
-                style=style,
-                scene=self._scene(),
-                parameters=self._parameters,
-                prepared_out=self._tables["prepared"],
-            )
-            for style, prepare in self._prepares.items()
-        ]
+        self._recorded_preparing: list[Phase] | None = None
+
+    @property
+    def _preparing(self) -> list[Phase]:
+        """The launches that look at every triangle on behalf of a style."""
+        if self._recorded_preparing is None:
+            self._recorded_preparing = [
+                record_prepare(
+                    self.device,
+                    prepare=prepare,
+                    style=style,
+                    scene=self._scene(),
+                    parameters=self._parameters,
+                    prepared_out=self._tables["prepared"],
+                )
+                for style, prepare in self._prepares.items()
+            ]
+        return self._recorded_preparing
 
     def _scene(self) -> Any:
         """Everything that shaders look at."""

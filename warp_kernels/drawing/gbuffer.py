@@ -9,9 +9,10 @@ doubled border can show, and no order of threads matters.
 import warp as wp
 
 from warp_kernels.device.device import Device, Phase
+from warp_kernels.device.exact import EXACT
 from warp_kernels.raster import SUBPIXELS, column_of, to_fixed, walk_edge
 
-wp.set_module_options({"enable_backward": False, "fuse_fp": False})
+wp.set_module_options(EXACT)
 
 _UNIT = wp.constant(SUBPIXELS)
 LEAST_ROWS = 1

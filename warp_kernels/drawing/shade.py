@@ -36,12 +36,6 @@ from warp_kernels.scene.scene import Sample, Scene, StyleParameters, extent_of, 
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 
-SHADE_OPTIONS = {
-    **EXACT,
-    "cpu_compiler_flags": "-march=native -mprefer-vector-width=512 -mllvm=-inline-threshold=9000",
-}
-"""The widest registers that there are, and one program of all functions that a stack is made of."""
-
 Values = wp.types.vector(length=ROOM, dtype=wp.float32)
 
 
@@ -173,10 +167,11 @@ def channels_of(coats: tuple[Coat, ...]) -> int:
 
 
 @cache
-def _shade_kernel(coats: tuple[Coat, ...], samples: int, fades: bool) -> Any:
+def shade_kernel(coats: tuple[Coat, ...], samples: int, fades: bool) -> Any:
+    """The kernel that draws a row with a stack of styles; see `record_shade`."""
     draw_stretch, channels = _stretch_drawer(coats, samples, fades), channels_of(coats)
 
-    @wp.kernel(module="unique", module_options=SHADE_OPTIONS)
+    @wp.kernel(module="unique", module_options=EXACT)
     def shade(
         span: wp.array(dtype=wp.vec2i),
         # In:
@@ -246,7 +241,7 @@ def record_shade(
             with straight alpha.
     """
     inputs = [scene, parameters, layers, triangle_of, top]
-    kernel = _shade_kernel(coats, samples, fades)
+    kernel = shade_kernel(coats, samples, fades)
     # as the rows of the labels are spread: each thread shades those that it has filled
     return device.record(
         kernel,

@@ -13,7 +13,9 @@ wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 
 
 @cache
-def _prepare_kernel(prepare: Any) -> Any:
+def prepare_kernel(prepare: Any) -> Any:
+    """The kernel that looks at a triangle on behalf of a style."""
+
     @wp.kernel(module="unique", module_options=EXACT)
     def prepare_triangles(
         span: wp.array(dtype=wp.vec2i),
@@ -52,4 +54,4 @@ def record_prepare(
         prepared_out: `Scene.prepared`, [styles, triangles] Numbers.
     """
     inputs = [scene, parameters, style]
-    return device.record(_prepare_kernel(prepare), inputs, [prepared_out])
+    return device.record(prepare_kernel(prepare), inputs, [prepared_out])

@@ -5,12 +5,13 @@ from typing import Any
 import numpy as np
 import warp as wp
 
+from warp_kernels.color_model import CHANNELS
 from warp_kernels.device.device import Phase
-from warp_kernels.energy.color_model import CHANNELS
+from warp_kernels.device.exact import EXACT
 from warp_kernels.energy.triangle_walk import columns_of, step_down, walk_triangle
 from warp_kernels.energy.workspace import Workspace
 
-wp.set_module_options({"enable_backward": False, "fuse_fp": False})
+wp.set_module_options(EXACT)
 
 DARKEST, BRIGHTEST = 0, 1
 """Places in what is measured; without a pixel the darkest is 255 and the brightest 0."""

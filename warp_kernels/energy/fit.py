@@ -11,9 +11,9 @@ from typing import Any
 
 import warp as wp
 
+from warp_kernels.color_model import SQUARE
 from warp_kernels.device.device import Device, Phase
 from warp_kernels.device.exact import EXACT
-from warp_kernels.energy.color_model import SQUARE
 from warp_kernels.energy.normal_equations import centring, factorising, shifts
 from warp_kernels.moments.moment_layout import MomentLayout, moment_types
 from warp_kernels.moments.triangle_sides import side_sums
@@ -97,7 +97,8 @@ def fit_moments(layout: MomentLayout) -> Any:
 
 
 @cache
-def _fit_kernel(layout: MomentLayout) -> Any:
+def fit_kernel(layout: MomentLayout) -> Any:
+    """The kernel that finds the best colours of a triangle."""
     types, model = moment_types(layout), layout.model
     color_type, area_type = types.color, types.area
     terms = model.term_count
@@ -191,4 +192,4 @@ def record_fit(
     """
     inputs = [sides, color_sums, area_sums, gauge, size[0], size[1]]
     outputs = [coefficients_out, energies_out, counts_out]
-    return device.record(_fit_kernel(layout), inputs, outputs)
+    return device.record(fit_kernel(layout), inputs, outputs)

@@ -3,9 +3,10 @@
 import warp as wp
 
 from warp_kernels.device.device import Device, Phase
+from warp_kernels.device.exact import EXACT
 from warp_kernels.raster import SUBPIXELS, to_fixed
 
-wp.set_module_options({"enable_backward": False, "fuse_fp": False})
+wp.set_module_options(EXACT)
 
 HEIGHT_FRACTION = 0.4
 """Largest step as a part of the smallest height around. Below 1/2 no triangle can turn inside

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 import warp as wp
 
+from warp_kernels.color_model import CHANNELS, ColorModel
 from warp_kernels.device.device import Phase
 from warp_kernels.device.exact import EXACT
-from warp_kernels.energy.color_model import CHANNELS, ColorModel
 from warp_kernels.energy.triangle_walk import columns_of, step_down, walk_triangle
 from warp_kernels.energy.workspace import Workspace
 
@@ -109,7 +109,8 @@ def _color_at(model: ColorModel) -> Any:
 
 
 @cache
-def _kernel(model: ColorModel) -> Any:
+def nearby_kernel(model: ColorModel) -> Any:
+    """The kernel that looks at the pixels of triangles in a model's colours."""
     color_at = _color_at(model)
 
     @wp.kernel(module="unique", module_options=EXACT)
@@ -222,7 +223,9 @@ class Nearby:
         place = workspace.standing.ptr
         if place not in self._recorded:
             inputs = [workspace.standing, workspace.triangles, workspace.pixels, *self._given]
-            self._recorded[place] = device.record(_kernel(workspace.model), inputs, self._found)
+            self._recorded[place] = device.record(
+                nearby_kernel(workspace.model), inputs, self._found
+            )
         phase = self._recorded[place]
         phase.resize(len(energies))
         device.run([phase])

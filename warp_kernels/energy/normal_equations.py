@@ -10,7 +10,7 @@ from typing import Any
 
 import warp as wp
 
-from warp_kernels.energy.color_model import CHANNELS, ColorModel
+from warp_kernels.color_model import CHANNELS, ColorModel
 from warp_kernels.moments.moment_layout import MomentLayout, moment_types
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})

@@ -12,17 +12,14 @@ import warp as wp
 from warp_kernels.device.device import Device, Phase
 from warp_kernels.device.exact import EXACT
 from warp_kernels.energy.fit import fit_moments
-from warp_kernels.energy.variants import DIRECTIONS, TRIANGLE_VARIANTS, first_version
 from warp_kernels.moments.moment_layout import MomentLayout, moment_types
 from warp_kernels.moments.triangle_sides import side_sums
+from warp_kernels.moments.variants import DIRECTIONS, TRIANGLE_VARIANTS, first_version
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 
 SMALLEST_PART = 256
 """Triangles whose variants take about as long as waking up a second thread."""
-
-SUMS = ("edges", "fragments")
-"""The two ways to sum, see `edge_moments` and `fragments`."""
 
 
 @cache
@@ -108,6 +105,11 @@ def _fragment_energy_kernel(layout: MomentLayout) -> Any:
     return solve_variants
 
 
+def energy_kernel(layout: MomentLayout, sums: str) -> Any:
+    """The kernel that solves variants, for moments that were summed in one of two ways."""
+    return _edge_energy_kernel(layout) if sums == "edges" else _fragment_energy_kernel(layout)
+
+
 def record_energies(
     device: Device,
     layout: MomentLayout,
@@ -140,10 +142,9 @@ def record_energies(
     Source: Lawonn & Guenther (2018), Eqs. 4, 13-15 (without the 1 / q of Eq. 13, so that energies
         add up, as Eq. 12 needs).
     """
+    kernel = energy_kernel(layout, sums)
     if sums == "edges":
-        kernel = _edge_energy_kernel(layout)
         inputs = [triangles, moved, sides, color_sums, area_sums, gauge]
         return device.record(kernel, inputs, [energies_out], smallest_part=SMALLEST_PART)
     inputs = [sides, color_sums, area_sums, gauge]
-    kernel = _fragment_energy_kernel(layout)
     return device.record(kernel, inputs, [energies_out], per_element=TRIANGLE_VARIANTS)

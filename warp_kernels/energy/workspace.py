@@ -9,18 +9,18 @@ from typing import Any
 import numpy as np
 import warp as wp
 
+from warp_kernels.color_model import ColorModel
 from warp_kernels.device.device import Device, Phase
-from warp_kernels.energy.color_model import ColorModel
 from warp_kernels.energy.fit import record_fit
 from warp_kernels.energy.gradient_descent import record_descent
 from warp_kernels.energy.variant_energies import record_energies
-from warp_kernels.energy.variants import EDGE_VERSIONS, TRIANGLE_VARIANTS
 from warp_kernels.moments.edge_moments import record_edge_moments
 from warp_kernels.moments.fragments import record_fragment_moments
 from warp_kernels.moments.moment_layout import layout_of_moments, moment_types
 from warp_kernels.moments.pixel_moments import check_size
 from warp_kernels.moments.pixel_weights import reduced_weights
 from warp_kernels.moments.prefix_tables import record_image_tables, table_length
+from warp_kernels.moments.variants import EDGE_VERSIONS, TRIANGLE_VARIANTS
 from warp_kernels.raster import SUBPIXELS
 
 FAR = 1e6

@@ -13,19 +13,13 @@ import warp as wp
 
 from warp_kernels.device.device import Device, Phase
 from warp_kernels.device.exact import EXACT
-from warp_kernels.energy.variants import EDGE_VERSIONS, end_displacement
 from warp_kernels.moments.edge_walk import row_walker
 from warp_kernels.moments.line_moments import line_moments
 from warp_kernels.moments.moment_layout import MomentLayout, moment_types
+from warp_kernels.moments.variants import EDGE_VERSIONS, end_displacement
 from warp_kernels.raster import to_fixed, walk_edge
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
-
-EDGE_OPTIONS = {
-    **EXACT,
-    "cpu_compiler_flags": "-march=native -mprefer-vector-width=512",
-}
-"""The widest registers that there are: eight sums fill one."""
 
 
 @cache
@@ -68,7 +62,7 @@ def _side_by_side_kernel(layout: MomentLayout) -> Any:
     types = moment_types(layout)
     start_walks, walk_rows = _walk_starter(), row_walker(layout)
 
-    @wp.kernel(module="unique", module_options=EDGE_OPTIONS)
+    @wp.kernel(module="unique", module_options=EXACT)
     def sum_along_edges(
         span: wp.array(dtype=wp.vec2i),
         # In:
@@ -107,7 +101,7 @@ def _edge_kernel(layout: MomentLayout, versions: int) -> Any:
     types, model = moment_types(layout), layout.model
     _, left_of = line_moments(layout)
 
-    @wp.kernel(module="unique", module_options=EDGE_OPTIONS)
+    @wp.kernel(module="unique", module_options=EXACT)
     def sum_along_edges(
         span: wp.array(dtype=wp.vec2i),
         # In:
@@ -140,6 +134,21 @@ def _edge_kernel(layout: MomentLayout, versions: int) -> Any:
             area_out[edge, n, version] = line.area[n]
 
     return sum_along_edges
+
+
+def edge_kernel(device: Device, layout: MomentLayout, versions: int) -> tuple[Any, int]:
+    """The kernel that walks along edges, and how many of its threads share an edge.
+
+    Args:
+        device: Where to run.
+        layout: Fixes the moments and their integers.
+        versions: 9 for the gradient, 1 for the edge itself alone.
+    """
+    # versions share vector registers on a CPU, unless the sums of one fill them all; on CUDA more
+    # threads are worth more
+    if versions == EDGE_VERSIONS and not (device.is_cuda or layout.wide):
+        return _side_by_side_kernel(layout), 1
+    return _edge_kernel(layout, versions), versions
 
 
 def record_edge_moments(
@@ -180,9 +189,5 @@ def record_edge_moments(
         the same.
     """
     inputs = [vertices, edges, moved, probe, table, size[0], size[1]]
-    # versions share vector registers on a CPU, unless the sums of one fill them all; on CUDA more
-    # threads are worth more
-    if versions == EDGE_VERSIONS and not (device.is_cuda or layout.wide):
-        return device.record(_side_by_side_kernel(layout), inputs, [color_out, area_out])
-    kernel = _edge_kernel(layout, versions)
-    return device.record(kernel, inputs, [color_out, area_out], per_element=versions)
+    kernel, threads = edge_kernel(device, layout, versions)
+    return device.record(kernel, inputs, [color_out, area_out], per_element=threads)

@@ -10,10 +10,10 @@ from typing import Any
 
 import warp as wp
 
-from warp_kernels.energy.variants import EDGE_VERSIONS
 from warp_kernels.moments.moment_layout import MomentLayout
 from warp_kernels.moments.prefix_tables import BLOCK_ROWS
 from warp_kernels.moments.running_sums import running_order
+from warp_kernels.moments.variants import EDGE_VERSIONS
 from warp_kernels.raster import FRACTION_BITS
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})

@@ -10,16 +10,17 @@ import warp as wp
 
 from warp_kernels.device.device import Device, Phase
 from warp_kernels.device.exact import EXACT
-from warp_kernels.energy.variants import TRIANGLE_VARIANTS, displacement
 from warp_kernels.moments.moment_layout import MomentLayout, moment_types
 from warp_kernels.moments.pixel_moments import area_sums_of_pixel, color_sums_of_pixel
+from warp_kernels.moments.variants import TRIANGLE_VARIANTS, displacement
 from warp_kernels.raster import first_row_below, to_fixed, winding
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 
 
 @cache
-def _fragment_kernel(layout: MomentLayout) -> Any:
+def fragment_kernel(layout: MomentLayout) -> Any:
+    """The kernel that adds up the fragments of one variant of a triangle."""
     types = moment_types(layout)
     color_type, area_type, integer = types.color, types.area, types.integer
     color_sums = color_sums_of_pixel(layout)
@@ -118,5 +119,5 @@ def record_fragment_moments(
     Deviation: the error follows from the moments, without a second pass over the fragments.
     """
     inputs = [vertices, triangles, probe, pixels, weights]
-    kernel = _fragment_kernel(layout)
+    kernel = fragment_kernel(layout)
     return device.record(kernel, inputs, [color_out, area_out], per_element=TRIANGLE_VARIANTS)

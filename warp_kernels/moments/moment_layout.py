@@ -17,7 +17,7 @@ from typing import Any
 
 import warp as wp
 
-from warp_kernels.energy.color_model import ColorModel
+from warp_kernels.color_model import ColorModel
 
 ENTRY = 4
 """Integers per entry of the table."""

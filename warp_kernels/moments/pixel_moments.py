@@ -8,10 +8,10 @@ from typing import Any
 
 import warp as wp
 
-from warp_kernels.energy.color_model import SQUARE
+from warp_kernels.color_model import SQUARE
 from warp_kernels.errors import OptionError
+from warp_kernels.limits import MAX_SIDE
 from warp_kernels.moments.moment_layout import MomentLayout, moment_types
-from warp_kernels.raster import MAX_SIDE
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 

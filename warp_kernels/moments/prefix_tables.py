@@ -13,9 +13,9 @@ from typing import Any
 
 import warp as wp
 
+from warp_kernels.color_model import SQUARE
 from warp_kernels.device.device import Device, Phase
 from warp_kernels.device.exact import EXACT
-from warp_kernels.energy.color_model import SQUARE
 from warp_kernels.moments.moment_layout import ENTRY, MomentLayout, moment_types
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
@@ -125,6 +125,11 @@ def _wide_table_kernel(layout: MomentLayout) -> Any:
     return sum_row
 
 
+def table_kernel(layout: MomentLayout) -> Any:
+    """The kernel that fills a row of the prefix table."""
+    return _wide_table_kernel(layout) if layout.wide else _narrow_table_kernel(layout)
+
+
 def record_image_tables(
     device: Device,
     layout: MomentLayout,
@@ -146,7 +151,6 @@ def record_image_tables(
     Deviation: prefix sums along rows take the place of sums over fragments; the paper has no
         weights.
     """
-    kernel = _wide_table_kernel(layout) if layout.wide else _narrow_table_kernel(layout)
-    phase = device.record(kernel, [pixels, weights], [table_out])
+    phase = device.record(table_kernel(layout), [pixels, weights], [table_out])
     phase.resize(pixels.shape[0])
     return phase

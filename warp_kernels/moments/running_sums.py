@@ -11,7 +11,7 @@ from typing import Any
 
 import warp as wp
 
-from warp_kernels.energy.color_model import SQUARE
+from warp_kernels.color_model import SQUARE
 from warp_kernels.moments.moment_layout import ENTRY, MomentLayout, moment_types
 from warp_kernels.moments.prefix_tables import BLOCK_ROWS
 

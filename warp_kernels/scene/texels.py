@@ -15,14 +15,14 @@ LINE = 64
 
 
 @dataclass(frozen=True, eq=False)
-class Texture:
+class Texels:
     """Images of one size, such as the tones of a hatching, at several levels of detail."""
 
     levels: tuple[np.ndarray, ...]
     """From fine to coarse, each [images, rows, columns] uint8; 255 is white."""
 
     @classmethod
-    def of(cls, images: np.ndarray) -> "Texture":
+    def of(cls, images: np.ndarray) -> "Texels":
         """Make coarser levels by halving until a side is a single texel.
 
         Args:
@@ -38,7 +38,7 @@ class Texture:
             levels.append(level)
         return cls(tuple(np.rint(255 * np.clip(level, 0, 1)).astype(np.uint8) for level in levels))
 
-    def with_neighbours(self, *, repeats: bool) -> "Texture":
+    def with_neighbours(self, *, repeats: bool) -> "Texels":
         """Each texel followed by those to its right, below it, and both, as `texture_at` reads it.
 
         Args:
@@ -47,7 +47,7 @@ class Texture:
         Returns:
             Levels [images, rows, 4 columns].
         """
-        return Texture(
+        return Texels(
             tuple(_in_fours(level, "wrap" if repeats else "edge") for level in self.levels)
         )
 
@@ -60,7 +60,7 @@ def _in_fours(level: np.ndarray, beyond: Literal["wrap", "edge"]) -> np.ndarray:
     return np.stack(fours, axis=3).reshape(*level.shape[:2], -1)
 
 
-def pack(textures: list[Texture | None]) -> tuple[np.ndarray, np.ndarray, list[tuple[int, int]]]:
+def pack(textures: list[Texels | None]) -> tuple[np.ndarray, np.ndarray, list[tuple[int, int]]]:
     """Put textures behind each other.
 
     Args:

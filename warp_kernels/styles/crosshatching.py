@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
+from warp_kernels.registry import Imported
 from warp_kernels.styles.drawn import Drawn
-from warp_kernels.styles.tones.tonal_art_map import Drawing, crossing_strokes
 
 
 @dataclass(frozen=True)
@@ -14,5 +14,5 @@ class Crosshatching(Drawn):
     Source: Lawonn & Guenther, Stylized Image Triangulation (2018), Sec. 5, Fig. 6e.
     """
 
-    drawing: ClassVar[Drawing] = staticmethod(crossing_strokes)
+    drawing = Imported("warp_kernels.styles.tones.tonal_art_map:crossing_strokes")
     portraits: ClassVar[tuple[str, ...]] = ("crosshatching:paper=#f8f4ea,spacing=3",)

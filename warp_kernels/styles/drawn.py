@@ -3,15 +3,16 @@
 from dataclasses import dataclass, field
 from functools import cache
 from math import cos, radians, sin
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from warp_kernels.errors import OptionError
-from warp_kernels.scene.texels import Texture
+from warp_kernels.registry import Imported, imported
 from warp_kernels.styles.color import parse_color
 from warp_kernels.styles.style import ReadPicture, Style
-from warp_kernels.styles.tones.lookup import packed_tones
-from warp_kernels.styles.tones.strokes import prepare_strokes, strokes_alone, strokes_on_paper
-from warp_kernels.styles.tones.tonal_art_map import SPACING, Drawing, tonal_art_map
+
+if TYPE_CHECKING:
+    from warp_kernels.scene.texels import Texels
+    from warp_kernels.styles.tones.tonal_art_map import Drawing
 
 NO_PAPER = "none"
 """Written instead of a colour where what lies below is the paper."""
@@ -93,9 +94,9 @@ class Drawn(Style):
         default=0, metadata={"help": "chooses one of many drawings", "range": (0, 65535)}
     )
 
-    prepare: ClassVar[Any] = prepare_strokes
+    prepare = Imported("warp_kernels.styles.tones.strokes:prepare_strokes")
     lays_strokes: ClassVar[bool] = True
-    drawing: ClassVar[Drawing]
+    drawing: ClassVar[Any]
     """The strokes."""
 
     def __post_init__(self) -> None:
@@ -108,15 +109,24 @@ class Drawn(Style):
     @property
     def shader(self) -> Any:
         """One of two, by whether there is paper."""
-        return strokes_alone if self.paper == NO_PAPER else strokes_on_paper
+        name = "strokes_alone" if self.paper == NO_PAPER else "strokes_on_paper"
+        return imported(f"warp_kernels.styles.tones.strokes:{name}")
 
     @property
     def covers(self) -> bool:
         """Whether there is paper."""
         return self.paper != NO_PAPER
 
+    @property
+    def ground(self) -> str | None:
+        """The sheet, if all triangles are one."""
+        is_sheet = self.paper not in (NO_PAPER, OWN_PAPER) and self.blend == "normal"
+        return self.paper if is_sheet else None
+
     def numbers(self) -> tuple[float, ...]:
         """In the order of `tones.strokes`."""
+        from warp_kernels.styles.tones.tonal_art_map import SPACING
+
         light = (value**2 for color in (self.ink, self._sheet) for value in parse_color(color))
         turn = radians(self.angle)
         rest = (SPACING / self.spacing, cos(turn), sin(turn), self.lighten, self.colored, self.seed)
@@ -127,11 +137,14 @@ class Drawn(Style):
         """The colour of a sheet, whether or not it is looked at."""
         return {NO_PAPER: "#fff", OWN_PAPER: SHEET}.get(self.paper, self.paper)
 
-    def texture(self, read: ReadPicture) -> Texture:
+    def texture(self, read: ReadPicture) -> "Texels":
         """The tonal art map."""
         return _texture_of(type(self).drawing, self.weight, self.grain, self.seed)
 
 
 @cache
-def _texture_of(drawing: Drawing, weight: float, grain: float, seed: int) -> Texture:
+def _texture_of(drawing: "Drawing", weight: float, grain: float, seed: int) -> "Texels":
+    from warp_kernels.styles.tones.lookup import packed_tones
+    from warp_kernels.styles.tones.tonal_art_map import tonal_art_map
+
     return packed_tones(tonal_art_map(drawing, width=weight, grain=grain, seed=seed))

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
+from warp_kernels.registry import Imported
 from warp_kernels.styles.drawn import Drawn
-from warp_kernels.styles.tones.tonal_art_map import Drawing, parallel_strokes
 
 
 @dataclass(frozen=True)
@@ -15,7 +15,7 @@ class Hatching(Drawn):
         drawings of Josh Bryan.
     """
 
-    drawing: ClassVar[Drawing] = staticmethod(parallel_strokes)
+    drawing = Imported("warp_kernels.styles.tones.tonal_art_map:parallel_strokes")
     portraits: ClassVar[tuple[str, ...]] = (
         "hatching",
         "hatching:paper=#f8f4ea",

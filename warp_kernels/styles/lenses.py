@@ -1,50 +1,10 @@
 """A glass lens on every triangle, through which the source picture is seen."""
 
 from dataclasses import dataclass, field
-from typing import Any, ClassVar
+from typing import ClassVar
 
-import warp as wp
-
-from warp_kernels.scene.scene import FIXED, Ink, Sample, Scene, StyleParameters, full_ink
-from warp_kernels.scene.source_picture import source_at
-from warp_kernels.scene.triangle_frame import from_incentre, inradius
+from warp_kernels.registry import Imported
 from warp_kernels.styles.style import Style
-
-wp.set_module_options({"enable_backward": False, "fuse_fp": False})
-
-_WHITE = wp.constant(wp.vec3f(255.0, 255.0, 255.0))
-_SHADOW = wp.constant(wp.vec3f(0.6, 0.8, 0.0))
-_LIGHT = wp.constant(wp.vec3f(-0.45, -0.6, 0.66))
-"""Where the light of the highlights comes from: from the upper left, above the picture."""
-
-
-@wp.func
-def refracted(normal: wp.vec3f, index: float) -> wp.vec2f:
-    """How far a ray from straight above is carried aside, per px that it descends in the glass."""
-    ratio = 1.0 / index
-    cosine = normal[2]
-    bend = wp.sqrt(1.0 - ratio * ratio * (1.0 - cosine * cosine)) - ratio * cosine
-    return wp.vec2f(-bend * normal[0], -bend * normal[1]) / (ratio + bend * cosine)
-
-
-@wp.func
-def lens_color(scene: Scene, parameters: StyleParameters, sample: Sample, below: wp.vec4f) -> Ink:
-    """The source where the refracted ray meets it, and a highlight."""
-    radius = inradius(scene, sample)
-    width = parameters.numbers[0] * radius
-    p = from_incentre(scene, sample)
-    height = parameters.numbers[1] * radius * wp.exp(-0.5 * wp.length_sq(p) / (width * width))
-    slope = -height / (width * width) * p
-    normal = wp.normalize(wp.vec3f(-slope[0], -slope[1], 1.0))
-    depth = height + parameters.numbers[4] * radius
-    moved = FIXED * depth * refracted(normal, parameters.numbers[2])
-    place = sample.place + wp.vec2i(int(wp.rint(moved[0])), int(wp.rint(moved[1])))
-    color = source_at(scene, place)
-    # glass that turns away from the viewer mirrors the dark around it, or the light
-    light = wp.max(wp.dot(normal, wp.normalize(_LIGHT + wp.vec3f(0.0, 0.0, 1.0))), 0.0)
-    shine = parameters.numbers[3] * wp.pow(light, 90.0)
-    shade = 1.0 - 0.7 * parameters.numbers[3] * (1.0 - normal[2]) * (1.0 + wp.dot(normal, _SHADOW))
-    return full_ink(wp.max(shade, 0.0) * color + shine * (_WHITE - wp.max(shade, 0.0) * color))
 
 
 @dataclass(frozen=True)
@@ -76,7 +36,7 @@ class Lenses(Style):
         },
     )
 
-    shader: ClassVar[Any] = lens_color
+    shader = Imported("warp_kernels.styles.shaders.lenses:lens_color")
     needs_source: ClassVar[bool] = True
 
     def numbers(self) -> tuple[float, ...]:

@@ -2,15 +2,17 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, fields
-from typing import Any, ClassVar
-
-import numpy as np
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from warp_kernels.errors import OptionError
-from warp_kernels.scene.texels import Texture
 from warp_kernels.styles.color import parse_color
 
-ReadPicture = Callable[[str], np.ndarray]
+if TYPE_CHECKING:
+    import numpy as np
+
+    from warp_kernels.scene.texels import Texels
+
+ReadPicture = Callable[[str], "np.ndarray"]
 """Reads a picture by its name as brightness, 0 (black) to 1 (white), [rows, columns]."""
 
 
@@ -18,13 +20,16 @@ ReadPicture = Callable[[str], np.ndarray]
 class Style:
     """A look: parameters that the user chooses and a shader that draws.
 
+    The help imports all styles, so their modules are light: shaders are `Imported` when they are
+    asked for, and methods import what they need.
+
     Parameters are fields; their metadata says what they may be, and that is checked here:
 
         help       what it does
         unit       its unit, if it has one
         range      least and largest value
         choices    the texts that it may be
-        form       `color`: written #rgb or #rrggbb
+        form       `color`: written #rgb, #rrggbb or a name of CSS
 
     Raises:
         OptionError: If a parameter is out of its range.
@@ -76,11 +81,16 @@ class Style:
         """Whether nothing can be transparent where it is drawn."""
         return self.covers and self.opacity == 1.0
 
+    @property
+    def ground(self) -> str | None:
+        """The colour of a sheet that it lays under everything, or None."""
+        return None
+
     def numbers(self) -> tuple[float, ...]:
         """At most sixteen numbers for the shader."""
         return ()
 
-    def texture(self, read: ReadPicture) -> Texture | None:
+    def texture(self, read: ReadPicture) -> "Texels | None":
         """The texture that its shader looks into, or None.
 
         Args:

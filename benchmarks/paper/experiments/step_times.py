@@ -9,10 +9,10 @@ from benchmarks.paper.page import Section, picture
 from benchmarks.paper.pictures import reduced
 from benchmarks.paper.study import Study
 from benchmarks.timing import layout_of, loaded_workspace, repeat, table, time_iteration
-from stages.topology import TOPOLOGIES, Goal
+from stages.topology import TOPOLOGIES
 from stages.topology.appraise import Appraiser
-from stages.topology.goal import SLIVER_HEIGHT
-from warp_kernels.energy.color_model import COLOR_MODELS
+from stages.topology.goal import SLIVER_HEIGHT, Goal
+from warp_kernels.color_model import COLOR_MODELS
 
 STEPS = (
     "load the picture",

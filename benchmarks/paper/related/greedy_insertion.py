@@ -11,8 +11,8 @@ from benchmarks.paper.related.counting import border_points, delaunay_mesh
 from benchmarks.paper.related.detail import gradient
 from stages.mesh import Mesh
 from stages.optimize import load_mesh
+from warp_kernels.color_model import COLOR_MODELS
 from warp_kernels.device.device import Device
-from warp_kernels.energy.color_model import COLOR_MODELS
 from warp_kernels.energy.workspace import Workspace
 
 LEAST_HEIGHT = 1.0

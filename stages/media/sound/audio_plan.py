@@ -18,9 +18,6 @@ from stages.media.sound.channels import Channels, channels_of
 from stages.media.writing.codecs import Container
 from warp_kernels.errors import OptionError
 
-MODES = ("auto", "copy", "aac")
-"""What a user may ask for."""
-
 _TRIED_PACKETS = 50
 """Packets of the source that are converted once to see whether that works."""
 _RATES = (8000, 11025, 12000, 16000, 22050, 24000, 32000, 44100, 48000, 64000, 88200, 96000)

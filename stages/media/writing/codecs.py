@@ -27,7 +27,7 @@ class Container:
 
 
 @dataclass(frozen=True)
-class Encoder:
+class VideoCodec:
     """A video encoder and its settings."""
 
     name: str
@@ -73,8 +73,8 @@ _YUV = ("yuv420p", "yuv422p", "yuv444p")
 _DEEP = ("yuv420p10le", "yuv422p10le", "yuv444p10le")
 
 ENCODERS = {
-    "h264": Encoder("libx264", _YUV + _DEEP, 18, 0, 51, {"preset": "superfast"}, _PRESETS),
-    "h265": Encoder(
+    "h264": VideoCodec("libx264", _YUV + _DEEP, 18, 0, 51, {"preset": "superfast"}, _PRESETS),
+    "h265": VideoCodec(
         "libx265",
         _YUV + _DEEP,
         20,
@@ -84,7 +84,7 @@ ENCODERS = {
         _PRESETS,
         tag="hvc1",
     ),
-    "av1": Encoder(
+    "av1": VideoCodec(
         "libsvtav1",
         ("yuv420p", "yuv420p10le"),
         28,
@@ -93,7 +93,7 @@ ENCODERS = {
         {"preset": "8"},
         tuple(str(n) for n in range(13, -1, -1)),
     ),
-    "vp9": Encoder(
+    "vp9": VideoCodec(
         "libvpx-vp9",
         _YUV,
         24,
@@ -103,10 +103,10 @@ ENCODERS = {
         alpha_format="yuva420p",
         odd_sizes=True,
     ),
-    "prores": Encoder(
+    "prores": VideoCodec(
         "prores_ks", ("yuv422p10le", "yuv444p10le"), None, 0, 0, {}, alpha_format="yuva444p10le"
     ),
-    "ffv1": Encoder(
+    "ffv1": VideoCodec(
         "ffv1",
         ("yuv444p", "yuv420p", "yuv422p", "bgr0"),
         None,
@@ -116,7 +116,7 @@ ENCODERS = {
         alpha_format="bgra",
         odd_sizes=True,
     ),
-    "gif": Encoder("gif", ("pal8",), None, 0, 0, {}),
+    "gif": VideoCodec("gif", ("pal8",), None, 0, 0, {}),
 }
 """By the name that users give."""
 
@@ -133,7 +133,7 @@ _ALIASES = {
 }
 
 
-def find_encoder(codec: str) -> Encoder:
+def find_encoder(codec: str) -> VideoCodec:
     """Look an encoder up.
 
     Args:

@@ -8,7 +8,7 @@ import numpy as np
 
 from stages.media.frame_range import FrameRange
 from stages.media.reading.info import MediaInfo
-from stages.media.writing.encoder_setup import EncodeOptions
+from stages.media.writing.encode_options import EncodeOptions
 from stages.media.writing.output_plan import WHOLE, OutputPlan, check_output
 from stages.media.writing.still_writer import StillWriter
 from stages.media.writing.video_writer import VideoWriter

@@ -1,7 +1,6 @@
 """Settings of a video encoder."""
 
 import os
-from dataclasses import dataclass, field
 from fractions import Fraction
 
 import av
@@ -9,49 +8,15 @@ from av.video.codeccontext import VideoCodecContext
 
 from stages.media.color.yuv import tag_bt709
 from stages.media.reading.container import DAMAGE, reason_of
-from stages.media.sound.audio_plan import MODES
-from stages.media.writing.codecs import Encoder
+from stages.media.writing.codecs import VideoCodec
+from stages.media.writing.encode_options import EncodeOptions
 from warp_kernels.errors import OptionError
 
 SVT_LOG = "SVT_LOG"
 """Environment variable that says how much the AV1 encoder prints."""
 
 
-@dataclass(frozen=True)
-class EncodeOptions:
-    """How an output is written."""
-
-    codec: str | None = field(
-        default=None,
-        metadata={"help": "video codec: h264, h265, av1, vp9, prores or ffv1 (by the ending)"},
-    )
-    crf: int | None = field(
-        default=None,
-        metadata={"help": "constant quality of the codec, smaller is better and larger"},
-    )
-    pixel_format: str | None = field(
-        default=None,
-        metadata={"help": "yuv420p plays everywhere; yuv444p keeps coloured edges sharp"},
-    )
-    encoder_preset: str | None = field(
-        default=None,
-        metadata={"help": "speed of the encoder, such as veryfast or slow for h264 and h265"},
-    )
-    audio: bool = field(default=True, metadata={"help": "carry the source's audio over"})
-    audio_mode: str = field(
-        default="auto",
-        metadata={
-            "help": "copy carries the source's audio packet by packet, aac makes AAC of it, auto "
-            "copies what players of the format play",
-            "choices": MODES,
-            "flag": "audio",
-        },
-    )
-    overwrite: bool = field(default=False, metadata={"help": "replace an existing output"})
-    threads: int = field(default=0, metadata={"help": "encoder threads, 0 for one per core"})
-
-
-def settings_of(encoder: Encoder, options: EncodeOptions) -> dict[str, str]:
+def settings_of(encoder: VideoCodec, options: EncodeOptions) -> dict[str, str]:
     """Options for FFmpeg.
 
     Args:
@@ -108,7 +73,7 @@ def open_quietly(codec: VideoCodecContext) -> None:
 
 
 def try_encoder(
-    encoder: Encoder, pixel_format: str, size: tuple[int, int], options: EncodeOptions
+    encoder: VideoCodec, pixel_format: str, size: tuple[int, int], options: EncodeOptions
 ) -> None:
     """Open an encoder once, so that what it refuses is known before any work is done.
 

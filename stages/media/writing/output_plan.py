@@ -13,9 +13,10 @@ from stages.media.frame_range import FrameRange
 from stages.media.naming import STILL_ENDINGS, NumberedPattern
 from stages.media.reading.info import MediaInfo
 from stages.media.sound.audio_plan import AudioPlan, plan_audio
-from stages.media.writing.codecs import CONTAINERS, Container, Encoder, find_encoder
+from stages.media.writing.codecs import CONTAINERS, Container, VideoCodec, find_encoder
 from stages.media.writing.commit import output_error, remove_left_overs, true_place
-from stages.media.writing.encoder_setup import EncodeOptions, try_encoder
+from stages.media.writing.encode_options import EncodeOptions
+from stages.media.writing.encoder_setup import try_encoder
 from warp_kernels.errors import OptionError, OutputError
 
 
@@ -29,7 +30,7 @@ class OutputPlan:
     """Pattern of numbered stills, or None."""
     container: Container | None
     """File format of a video or GIF; None for stills."""
-    encoder: Encoder | None
+    encoder: VideoCodec | None
     """Video encoder; None for stills."""
     pixel_format: str
     """Format that the encoder takes; empty for stills."""
@@ -181,7 +182,7 @@ def _plan_stills(
     return OutputPlan(target, pattern, None, None, "", size[0], size[1], None, tuple(notes))
 
 
-def _check_holds(container: Container, encoder: Encoder, ending: str) -> None:
+def _check_holds(container: Container, encoder: VideoCodec, ending: str) -> None:
     trial = av.open(io.BytesIO(), "w", format=container.format)
     try:
         trial.add_stream(encoder.name, rate=25)
@@ -193,7 +194,7 @@ def _check_holds(container: Container, encoder: Encoder, ending: str) -> None:
         trial.close()
 
 
-def _check_quality(encoder: Encoder, options: EncodeOptions) -> None:
+def _check_quality(encoder: VideoCodec, options: EncodeOptions) -> None:
     if options.crf is not None:
         if encoder.quality is None:
             raise OptionError(

@@ -17,7 +17,8 @@ from stages.media.reading.container import DAMAGE
 from stages.media.reading.info import MediaInfo
 from stages.media.sound.audio import AudioTrack, open_audio
 from stages.media.writing.commit import PendingFile, output_error
-from stages.media.writing.encoder_setup import EncodeOptions, open_quietly, set_up, settings_of
+from stages.media.writing.encode_options import EncodeOptions
+from stages.media.writing.encoder_setup import open_quietly, set_up, settings_of
 from stages.media.writing.output_plan import OutputPlan
 from stages.media.writing.pacing import Pacing, Shown
 from stages.media.writing.palette import PaletteFilter

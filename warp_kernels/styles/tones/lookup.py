@@ -9,7 +9,7 @@ import numpy as np
 import warp as wp
 
 from warp_kernels.scene.scene import Scene
-from warp_kernels.scene.texels import LINE, Texture
+from warp_kernels.scene.texels import LINE, Texels
 from warp_kernels.styles.tones.tonal_art_map import TONE_STEP, TONES
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
@@ -37,7 +37,7 @@ _TONE_STEP = wp.constant(TONE_STEP)
 _PAIRS = wp.constant(PAIRS)
 
 
-def packed_tones(tones: np.ndarray) -> Texture:
+def packed_tones(tones: np.ndarray) -> Texels:
     """Levels of detail of a tonal art map, in the order in which `ink_at` reads them.
 
     Args:
@@ -46,8 +46,8 @@ def packed_tones(tones: np.ndarray) -> Texture:
     Returns:
         Levels [PAIRS, side, 8 side] uint8.
     """
-    levels = (level for level in Texture.of(tones).levels if level.shape[1] >= SMALLEST)
-    return Texture(tuple(_packed(softened(level)) for level in levels))
+    levels = (level for level in Texels.of(tones).levels if level.shape[1] >= SMALLEST)
+    return Texels(tuple(_packed(softened(level)) for level in levels))
 
 
 def softened(level: np.ndarray) -> np.ndarray:

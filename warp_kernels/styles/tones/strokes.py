@@ -5,7 +5,7 @@ The style hands over these numbers, in this order, and colours as light: squares
 
 import warp as wp
 
-from warp_kernels.drawing.blend import to_code, to_light
+from warp_kernels.scene.light import to_code, to_light
 from warp_kernels.scene.scene import (
     Ink,
     Numbers,

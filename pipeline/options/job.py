@@ -9,7 +9,7 @@ there and nowhere else. Metadata of a field:
     choices    the values that it may have
     metavar    how its value is shown in the help
     flag       its name on the command line, if not its own name with dashes
-    registry   the registry whose members it names, as module:NAME
+    registry   the registry whose members it names
     group      the heading in the help, if not that of its dataclass
 """
 
@@ -19,7 +19,7 @@ from pipeline.options.look import Look
 from pipeline.options.output import Output
 from pipeline.options.run import Run
 from pipeline.options.solve_options import SolveOptions
-from warp_kernels.energy.color_model import ColorModel
+from warp_kernels.color_model import ColorModel
 
 
 @dataclass(frozen=True)

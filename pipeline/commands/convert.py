@@ -1,0 +1,108 @@
+"""One run of `animate`, `solve` or `render`, and what is told of it."""
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from pipeline.loop.result import Animated
+    from pipeline.options.job import Job
+    from pipeline.progress import Progress
+
+
+def convert(arguments: argparse.Namespace) -> "Animated":
+    """Convert one source, or draw one track.
+
+    Args:
+        arguments: What the user gave, with the name of the source or track and of the output;
+            options that were left out are absent.
+    """
+    return {"animate": _animate, "solve": _solve, "render": _render}[arguments.command](arguments)
+
+
+def _animate(arguments: argparse.Namespace) -> "Animated":
+    job = _job(arguments)
+    with progress_for(arguments) as progress:
+        from pipeline.loop.animate import animate
+
+        return _tell(progress, animate(job, progress), job.output.path)
+
+
+def _solve(arguments: argparse.Namespace) -> "Animated":
+    # Looks, which a preset may hold, do not belong to a track.
+    job = _job(arguments, track=arguments.output, output=None, styles=(), regions=())
+    with progress_for(arguments) as progress:
+        from pipeline.loop.animate import solve
+
+        result = solve(job.solve, job.output, job.run, progress)
+        return _tell(progress, result, job.output.track)
+
+
+def _render(arguments: argparse.Namespace) -> "Animated":
+    from pipeline.options.build import build_render
+    from pipeline.track.kind import drawn_ending
+
+    path = Path(arguments.track)
+    source = None if arguments.source is None else Path(arguments.source)
+    wanted = build_render(_given(arguments), path, drawn_ending(path))
+    from pipeline.look.render_job import render_job
+    from pipeline.loop.render import render
+    from pipeline.track import TrackReader
+
+    with TrackReader(path) as track, progress_for(arguments) as progress:
+        made = render_job(track, *wanted, source)
+        for note in made.notes:
+            progress.note(note)
+        for warning in made.warnings:
+            progress.warn(warning)
+        result = render(made.job, track, made.info, progress)
+        return _tell(progress, result, made.job.output.path)
+
+
+def _job(arguments: argparse.Namespace, **fixed: object) -> "Job":
+    """The job that the arguments and their preset describe.
+
+    Args:
+        arguments: What the user gave.
+        fixed: What the command decides itself.
+    """
+    from pipeline.options.build import build_job
+
+    return build_job({**_given(arguments), **fixed})
+
+
+def _given(arguments: argparse.Namespace) -> dict[str, object]:
+    """What the arguments and their preset give."""
+    from pipeline.options.command_line import with_preset
+    from pipeline.options.presets import read_preset
+
+    given = dict(vars(arguments))
+    name = given.pop("preset")
+    return with_preset(given, read_preset(name) if name else {})
+
+
+def progress_for(arguments: argparse.Namespace) -> "Progress":
+    """What tells of a run, as the user wants it.
+
+    Args:
+        arguments: What the user gave.
+    """
+    from pipeline.progress import open_progress
+
+    chosen = "none" if arguments.quiet and arguments.progress == "auto" else arguments.progress
+    verbose = arguments.verbose or not (arguments.quiet or chosen == "none")
+    return open_progress(chosen, verbose=verbose)
+
+
+def _tell(progress: "Progress", result: "Animated", output: Path | None) -> "Animated":
+    """Tell what came of a run, and give it on."""
+    assert output is not None
+    from pipeline.commands.pipes import shown_name
+    from pipeline.progress import Summary
+
+    for note in result.notes:
+        progress.note(note)
+    for warning in result.warnings:
+        progress.warn(warning)
+    progress.finish(Summary(result.frames, result.seconds, result.mean_rmse, shown_name(output)))
+    return result

@@ -1,0 +1,41 @@
+"""Names on the command line: pipes, and which input is worked on."""
+
+import argparse
+from collections.abc import Sequence
+
+PIPE = "-"
+"""How a user names a pipe; `-.gif` and the like choose the format of an output."""
+
+
+def take(arguments: argparse.Namespace, name: str) -> None:
+    """Make one of several inputs the one that is worked on.
+
+    Args:
+        arguments: What the user gave; changed.
+        name: The input.
+    """
+    setattr(arguments, "track" if arguments.command == "render" else "source", name)
+
+
+def joined(arguments: Sequence[str]) -> list[str]:
+    """Arguments in which `-o -.png` is one word: apart from it the second looks like an option.
+
+    Args:
+        arguments: As the shell gives them.
+    """
+    words: list[str] = []
+    for word in arguments:
+        if words and words[-1] in ("-o", "--output") and is_pipe(word):
+            words[-1] += word if words[-1] == "-o" else f"={word}"
+        else:
+            words.append(word)
+    return words
+
+
+def is_pipe(output: str) -> bool:
+    """Whether a name means standard output, with or without a format.
+
+    Args:
+        output: The name.
+    """
+    return output == PIPE or (output.startswith("-.") and "/" not in output)

@@ -1,0 +1,102 @@
+"""Convert one input, or several one after the other whatever becomes of each."""
+
+import argparse
+import os
+import traceback
+from collections.abc import Callable
+from time import perf_counter
+from typing import TYPE_CHECKING
+
+from pipeline.commands.batch import Batch, Item, batch_of
+from pipeline.commands.convert import convert, progress_for
+from pipeline.commands.inputs import take
+from warp_kernels.errors import OptionError
+
+if TYPE_CHECKING:
+    from pipeline.loop.result import Animated
+
+
+def convert_all(
+    arguments: argparse.Namespace, report: Callable[[BaseException, argparse.Namespace], int]
+) -> int:
+    """Convert what the user named.
+
+    Args:
+        arguments: What the user gave; names of the input and output are replaced.
+        report: Tells of a failure in one line and gives its exit code.
+
+    Returns:
+        The exit code of the worst.
+
+    Raises:
+        TrimotionError: If nothing was begun; or the failure of one that stands alone.
+    """
+    batch = batch_of(arguments.command, arguments.inputs, arguments.output)
+    if batch is None:
+        convert(arguments)
+        return 0
+    _check_shared(arguments)
+    outcome = Outcome(batch)
+    with progress_for(arguments) as progress:
+        for note in batch.notes:
+            progress.note(note)
+    for number, item in enumerate(batch.items, start=1):
+        with progress_for(arguments) as progress:
+            progress.file(number, len(batch.items), item.source, str(item.output))
+        take(arguments, item.source)
+        arguments.output = str(item.output)
+        try:
+            outcome.add(convert(arguments))
+        except Exception as error:  # the others do not depend on it
+            if arguments.debug:
+                traceback.print_exc()
+            outcome.fail(item, report(error, arguments))
+    with progress_for(arguments) as progress:
+        progress.finish_all(outcome.as_line(), outcome.frames, list(outcome.failed), outcome.code)
+    return outcome.code
+
+
+class Outcome:
+    """What has become of a batch so far.
+
+    Args:
+        batch: What is done.
+    """
+
+    def __init__(self, batch: Batch) -> None:
+        self._batch = batch
+        self._begun = perf_counter()
+        self.frames = 0
+        """Frames of those that were done."""
+        self.failed: list[str] = []
+        """Inputs that failed."""
+        self.code = 0
+        """Exit code of the worst."""
+
+    def add(self, result: "Animated") -> None:
+        """Count one that was done."""
+        self.frames += result.frames
+
+    def fail(self, item: Item, code: int) -> None:
+        """Count one that failed."""
+        self.failed.append(item.source)
+        self.code = max(self.code, code)
+
+    def as_line(self) -> str:
+        """The summary, for people."""
+        total, seconds = len(self._batch.items), perf_counter() - self._begun
+        done = f"{total - len(self.failed)} of {total} done"
+        failed = f", failed: {', '.join(self.failed)}" if self.failed else ""
+        told = f"{done}, {self.frames} frames in {seconds:.1f} s"
+        return f"{told}: {self._batch.folder}{os.sep}{failed}"
+
+
+def _check_shared(arguments: argparse.Namespace) -> None:
+    """Refuse one file that all outputs would share.
+
+    Raises:
+        OptionError: If a track is named for all.
+    """
+    track = None if arguments.command == "render" else getattr(arguments, "track", None)
+    if track is not None and not os.path.isdir(track):
+        raise OptionError(f"--track {track}: several inputs: name a folder for them, {track}/")

@@ -1,0 +1,175 @@
+"""A source in one pass: the loop over time in which frames are solved.
+
+A frame is drawn while the next one is solved and later ones are prepared, each in its own thread.
+"""
+
+from collections.abc import Generator, Iterable, Iterator, Sequence
+from contextlib import closing, nullcontext
+from time import perf_counter
+
+import numpy as np
+
+from pipeline.envelope import MeshFrom, Prepared, Solved
+from pipeline.look.drawing import Drawing, check_drawing
+from pipeline.look.source_pictures import source_pictures
+from pipeline.loop.attention import Attention
+from pipeline.loop.motion import check_cuts, open_around
+from pipeline.loop.prepare import prepared
+from pipeline.loop.result import Animated, Tally
+from pipeline.loop.threads import Behind, ahead
+from pipeline.options.job import Job
+from pipeline.options.solve_options import SolveOptions
+from pipeline.progress import Progress
+from pipeline.track import TrackReader, TrackWriter
+from pipeline.track.resume import Past, open_track, past_of
+from stages.masks.weight_maps import WeightMap
+from stages.media import Decoder
+from stages.media.expected_frames import expected_frames
+from stages.motion.advect import advect
+from stages.triangulate import Triangulator
+from warp_kernels.color_model import ColorModel
+from warp_kernels.device.device import Device
+
+DECODED_AHEAD = 3
+"""Decoded frames that may wait."""
+SOLVED_BEHIND = 3
+"""Triangulated frames that may wait to be drawn and encoded."""
+
+
+def convert(job: Job, fitted: ColorModel, progress: Progress) -> Animated:
+    """Solve a source in one pass: to its track, to its output, or to both.
+
+    Args:
+        job: What to do; it follows no regions, which may come from frames that are solved later.
+        fitted: The colour model of the snapshots.
+        progress: Told of every finished frame.
+
+    Raises:
+        TrimotionError: As `animate` and `solve` do.
+    """
+    begun = perf_counter()
+    options, track_path = job.solve, job.output.track
+    draws = job.output.path is not None
+    past = past_of(options, job.output, fitted)
+    with open_around(options, None if past is None else past.reached) as decoder:
+        info = decoder.info
+        check_cuts(options.cuts, options.source, info)
+        if draws:
+            check_drawing(job, info)
+        device = Device(job.run.device, job.run.threads, progress.kernels)
+        count = options.triangulate.refine.triangles
+        attention = Attention(options.foci, info, options.frame_range.step, count)
+        size = (info.width, info.height)
+        maps = [WeightMap(str(m.file), size, options.frame_range, m.strength) for m in options.maps]
+        # in this order all kernels of the job are compiled together
+        drawing = Drawing(job, info, device) if draws else None
+        triangulator = triangulator_of(options, size, device, fitted)
+        tally = Tally(progress, expected_frames(options.frame_range, info))
+        restarts: list[str] = []
+        found = _opened(decoder, attention, maps, options, past, restarts)
+        with device, open_track(options, track_path, info, fitted, past) as track:
+            writer = Behind(_Writer(track, drawing), SOLVED_BEHIND)
+            with drawing or nullcontext(), closing(found), writer:
+                if past is not None:
+                    _recall(job, tally, writer if draws else None)
+                keeps = job.look.needs_source
+                for solved in solved_frames(found, triangulator, options, past, keeps=keeps):
+                    writer.put(solved)
+                    tally.add(solved.snapshot.mesh.triangle_count, solved.snapshot.rmse)
+            if track is not None:
+                track.finish()
+    made = [] if drawing is None else drawing.notes
+    warnings = [*decoder.warnings, *(text for one in maps for text in one.warnings)]
+    notes = [] if past is None else past.notes
+    notes += restarts if track_path is not None else []
+    told = [*device.notes, *decoder.notes, *notes, *attention.notes]
+    told += [note for one in maps for note in one.notes]
+    return tally.result(begun, warnings, [*told, *made])
+
+
+def _opened(
+    decoder: Decoder,
+    attention: Attention,
+    maps: Sequence[WeightMap],
+    options: SolveOptions,
+    past: Past | None,
+    notes: list[str],
+) -> Generator[Prepared, None, None]:
+    """Decode and prepare frames ahead of the solution."""
+    reached = None if past is None else past.reached
+    found = prepared(decoder, decoder.info, attention, maps, options, reached, notes)
+    return ahead(found, DECODED_AHEAD)
+
+
+def triangulator_of(
+    options: SolveOptions, size: tuple[int, int], device: Device, fitted: ColorModel
+) -> Triangulator:
+    """What makes snapshots of a source for the looks that will be drawn.
+
+    Args:
+        options: Say how pictures become triangles.
+        size: Width and height of the source, upright [px].
+        device: Where kernels run.
+        fitted: The colour model of the snapshots.
+    """
+    return Triangulator(device, size, options.triangulate, fitted)
+
+
+def solved_frames(
+    found: Iterable[Prepared],
+    triangulator: Triangulator,
+    options: SolveOptions,
+    past: Past | None,
+    *,
+    keeps: bool = False,
+) -> Iterator[Solved]:
+    """Triangulate frame after frame, each from the mesh of the one before.
+
+    Args:
+        found: The frames, and the motion between them; one is taken for each that is given.
+        triangulator: Made by `triangulator_of` for the options.
+        options: Say how frames begin.
+        past: What an earlier run left, or None.
+        keeps: Whether what draws them needs their pictures.
+    """
+    snapshot = None if past is None else past.snapshot
+    for ready in found:
+        frame, mesh_from = ready.frame, ready.mesh_from
+        if snapshot is None or mesh_from is MeshFrom.LAYOUT:
+            rng = np.random.default_rng([options.seed, frame.index])
+            snapshot = triangulator.first(frame, options.layout, rng)
+        elif mesh_from is MeshFrom.TRACK:
+            triangulator.recall(frame, snapshot)
+            continue
+        elif mesh_from is MeshFrom.SAME_PICTURE:
+            snapshot = snapshot.again(frame)
+        else:
+            snapshot = triangulator.next(frame, advect(snapshot.mesh, mesh_from), snapshot)
+        yield ready.solved(snapshot, keeps_picture=keeps)
+
+
+def _recall(job: Job, tally: Tally, writer: Behind[Solved] | None) -> None:
+    """Count what the track holds already, and draw it if that is wanted."""
+    options, is_drawn = job.solve, writer is not None
+    assert job.output.track is not None
+    with TrackReader(job.output.track) as track:
+        rows = track.rows_in(options.frame_range)
+        sources = source_pictures(options, job.look, rows) if is_drawn else [None] * len(rows)
+        for row, source in zip(rows, sources, strict=True):
+            if writer is not None:
+                writer.put(Solved(row.shot, track.snapshot(row.frame), source, is_stored=True))
+            tally.add(row.triangle_count, row.rmse, is_told=is_drawn)
+
+
+class _Writer:
+    """Stores a solved frame, and draws it."""
+
+    def __init__(self, track: TrackWriter | None, drawing: Drawing | None) -> None:
+        self._track = track
+        self._drawing = drawing
+
+    def __call__(self, solved: Solved) -> None:
+        if self._track is not None and not solved.is_stored:
+            self._track.write(solved.snapshot, solved.shot)
+        if self._drawing is not None:
+            self._drawing.draw(solved)

@@ -1,0 +1,74 @@
+"""Values from text: one set of rules for command lines, presets, programs and parameters."""
+
+import math
+import re
+from argparse import ArgumentTypeError
+from collections.abc import Callable
+from dataclasses import Field
+from fractions import Fraction
+from functools import partial
+from pathlib import Path
+from typing import Any, get_origin
+
+from stages.look.output_size import FORM, parse_size
+
+_SWITCHES = {"true": True, "yes": True, "1": True, "false": False, "no": False, "0": False}
+
+
+def _finite(text: str) -> float:
+    number = float(text)
+    if not math.isfinite(number):
+        raise ValueError(text)
+    return number
+
+
+def _grey(name: str) -> Any:
+    from stages.masks.gray import read_gray
+
+    return read_gray(name)
+
+
+_RULES: dict[str, tuple[Callable[[str], Any], str, str]] = {
+    "bool": (lambda text: _SWITCHES[text.lower()], "true or false", "true or false"),
+    "int": (int, "a whole number", "one such as 12"),
+    "float": (_finite, "a number", "one such as 0.5"),
+    "Fraction": (Fraction, "a rate", "one such as 24 or 30000/1001"),
+    "tuple[int, int]": (parse_size, "a size", FORM),
+}
+"""How values of a type are read, what they are, and how one is written."""
+NAMES: dict[str, Callable[[str], Any]] = {"str": str, "Path": Path, "ndarray": _grey}
+"""Types whose values are any text, among them names of files."""
+
+
+def kind_of(field: Field[Any]) -> str:
+    """The type of a field as it is written, such as `int | None`, but for its modules."""
+    kind: Any = field.type
+    is_class = isinstance(kind, type) and get_origin(kind) is None
+    return kind.__name__ if is_class else re.sub(r"\w+\.", "", str(kind))
+
+
+def read_value(kind: str, text: str, parameter: str | None = None) -> Any:
+    """Read a value of a type, see `kind_of`; the message names a parameter if it is one's.
+
+    Raises:
+        ArgumentTypeError: If the text stands for no such value.
+        MediaError: If it names a picture that cannot be read.
+    """
+    kind = kind.removesuffix(" | None")
+    if kind not in _RULES:
+        if not text:
+            raise ArgumentTypeError("is empty; give a value or leave the option out")
+        return NAMES.get(kind, str)(text)
+    read, noun, form = _RULES[kind]
+    try:
+        return read(text)
+    except (ValueError, KeyError, ZeroDivisionError):
+        told = f"{text!r} is not {noun}; write {form}"
+        raise ArgumentTypeError(
+            f"{parameter}={text}: write {noun}" if parameter else told
+        ) from None
+
+
+text_value: Callable[[str], str] = partial(read_value, "str")
+whole_number: Callable[[str], int] = partial(read_value, "int")
+size: Callable[[str], tuple[int, int]] = partial(read_value, "tuple[int, int]")

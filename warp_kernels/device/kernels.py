@@ -1,0 +1,134 @@
+"""The kernels of a device: compiled together and on all cores, when the first of them is needed.
+
+A kernel is compiled once on a machine, in about a second; a job needs a dozen. So those that will
+be needed are named before: all that are missing in Warp's cache are compiled at once, and whoever
+waits is told how far that is. Of several processes one compiles and the others wait for it.
+
+The order matters in another way. Warp names a compiled kernel by a hash that changes a little once
+functions it shares with others have been compiled: what is hashed before anything is compiled has
+the same name in every run, and is found again.
+"""
+
+import os
+from collections.abc import Callable, Iterable
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from pathlib import Path
+from typing import Any
+
+import warp as wp
+
+from warp_kernels.device.kernel_turn import waited_turn
+
+MOST_COMPILERS = 8
+"""Threads that compile: each reads Warp's headers for itself, which takes as long as a kernel."""
+COMPILER = "trimotion-compiler"
+"""Name of these threads."""
+
+_pool: ThreadPoolExecutor | None = None
+"""The threads that an early start has left: they have read the headers."""
+
+Told = Callable[[int, int], object]
+"""Is told how many of how many kernels are compiled, the first time before any is."""
+
+
+def tell_nobody(done: int, total: int) -> None:
+    """Compile in silence."""
+
+
+class Kernels:
+    """Which kernels of a device are ready, and which are awaited.
+
+    Args:
+        device: Warp's device.
+        tell: Told how far compiling is; nothing if all are compiled already.
+    """
+
+    def __init__(self, device: Any, tell: Told) -> None:
+        self._device = device
+        self._tell = tell
+        self._awaited: dict[Any, None] = {}
+        self._ready: set[Any] = set()
+
+    def expect(self, kernels: Iterable[Any]) -> None:
+        """Name kernels that will be needed, those first that take longest to compile."""
+        self._awaited.update(dict.fromkeys(kernels))
+
+    def make_ready(self, kernel: Any) -> None:
+        """Compile a kernel and all that are expected, unless they are compiled already."""
+        if kernel in self._ready:
+            return
+        self._awaited.setdefault(kernel)
+        modules = dict.fromkeys(awaited.module for awaited in self._awaited)
+        self._ready.update(self._awaited)
+        self._awaited.clear()
+        folder = Path(wp.config.kernel_cache_dir or "")
+        # all names before the first compilation, see above
+        places = {module: folder / self._name(module) for module in modules}
+        missing = _missing(places)
+        if not missing:
+            return
+        total = len(missing)
+        self._tell(0, total)
+
+        def look() -> None:
+            """Tell how far the process is that compiles."""
+            self._tell(total - len(_missing(dict(missing))), total)
+
+        with waited_turn(folder, look):
+            left = _missing(missing)
+            self._compile(list(left), total)
+
+    def _name(self, module: Any) -> str:
+        """Of the folder of a compiled module."""
+        # as a launch that does not say otherwise
+        threads = 1 if self._device.is_cpu else None
+        return str(module.get_module_identifier(threads))
+
+    def _compile(self, modules: list[Any], total: int) -> None:
+        """Compile modules side by side; `total` counts those of another process as well."""
+        if not modules:
+            return
+        done = total - len(modules)
+        pool = _take_pool()
+        try:
+            jobs = [pool.submit(wp.load_module, module, self._device) for module in modules]
+            for job in as_completed(jobs):
+                job.result()
+                done += 1
+                self._tell(done, total)
+        finally:
+            pool.shutdown(cancel_futures=True)
+
+
+def compile_early(device: Any, kernels: list[Any]) -> None:
+    """Compile kernels that every job needs, at once; the threads are kept for those to come.
+
+    Args:
+        device: Warp's device.
+        kernels: Kernels of modules of their own files.
+    """
+    global _pool
+    _pool = _take_pool()
+    with waited_turn(Path(wp.config.kernel_cache_dir or ""), lambda: None):
+        jobs = [_pool.submit(wp.load_module, kernel.module, device) for kernel in kernels]
+        for job in jobs:
+            job.result()
+
+
+def _take_pool() -> ThreadPoolExecutor:
+    """Threads that compile: the compiler lets go of the interpreter's lock."""
+    global _pool
+    pool, _pool = _pool, None
+    return pool or ThreadPoolExecutor(min(_cores(), MOST_COMPILERS), COMPILER)
+
+
+def _missing(places: dict[Any, Path]) -> dict[Any, Path]:
+    """What is not compiled."""
+    return {module: place for module, place in places.items() if not place.exists()}
+
+
+def _cores() -> int:
+    """Cores that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1

@@ -1,0 +1,1 @@
+"""What styles draw: their functions for Warp, apart from the parameters that the help shows."""
