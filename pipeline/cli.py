@@ -65,8 +65,8 @@ def main(argv: Sequence[str] | None = None, commands: "Mapping[str, Command] | N
 def _say_at_once(arguments: argparse.Namespace) -> None:
     """On a first run, say that kernels will be compiled, before what takes a second to import."""
     from pipeline.commands.convert import progress_for
+    from pipeline.commands.early_start import start_early
     from warp_kernels.device.cache_place import is_first_run
-    from warp_kernels.device.early_start import start_early
 
     if arguments.command in COMPILING and is_first_run():
         with progress_for(arguments) as progress:
@@ -95,6 +95,17 @@ def run_conversion(arguments: argparse.Namespace) -> int:
     from pipeline.commands.several import convert_all
 
     return convert_all(arguments, _report)
+
+
+def run_preview(arguments: argparse.Namespace) -> None:
+    """Draw a few moments.
+
+    Args:
+        arguments: What the user gave; options that were left out are absent.
+    """
+    from pipeline.commands.convert import preview_of
+
+    print(preview_of(arguments))
 
 
 def run_plan(arguments: argparse.Namespace) -> None:
@@ -212,6 +223,7 @@ COMMANDS: dict[str, Command] = {
     "animate": run_conversion,
     "solve": run_conversion,
     "render": run_conversion,
+    "preview": run_preview,
     "plan": run_plan,
     "join": run_join,
     "info": run_info,

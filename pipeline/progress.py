@@ -82,6 +82,15 @@ class Progress:
             rmse: Its error [code values].
         """
 
+    def moment(self, done: int, total: int, frame: int) -> None:
+        """Tell that a moment of a preview is finished.
+
+        Args:
+            done: Number of moments finished so far.
+            total: Number of moments in all.
+            frame: Number of its frame.
+        """
+
     def kernels(self, done: int, total: int | None) -> None:
         """Tell how many kernels are compiled, which happens once on a machine.
 
@@ -190,6 +199,10 @@ class PlainProgress(Progress):
         """Tell about a frame as often as about others."""
         self._tell(done, total, f"rmse {rmse:.2f}")
 
+    def moment(self, done: int, total: int, frame: int) -> None:
+        """Tell about a moment."""
+        self._print(f"moment {done}/{total}  frame {frame}")
+
     def _tell(self, done: int, total: int | None, figures: str) -> None:
         if done != total and done > 1 and not self._is_due():
             return
@@ -239,6 +252,10 @@ class BarProgress(Progress):
     def compared(self, done: int, total: int | None, rmse: float) -> None:
         """Move the bar."""
         self._move(done, total, f"rmse {rmse:.2f}")
+
+    def moment(self, done: int, total: int, frame: int) -> None:
+        """Tell about a moment: there are few."""
+        self._print(f"moment {done}/{total}  frame {frame}")
 
     def _move(self, done: int, total: int | None, figures: str, unit: str = " frames") -> None:
         try:

@@ -72,6 +72,12 @@ MAX_KERNEL_LINES = 60
 # The homes of users and of build machines, and scratch folders.
 FOREIGN_PATH = re.compile(r"(?<![\w.\-/~}>])/(?:root|home|Users|work|workspace|tmp)/[\w.\-]")
 
+# An object's private name after a dot, but for one's own and those that notebooks look for.
+PATCH = re.compile(
+    r"\b(?:setattr|delattr|setitem|delitem)\(|\bmock\b"
+    r"|(?<!self)(?<!cls)(?<!\(\))(?<!r)\._(?!repr_)[a-z]\w*"
+)
+
 Finding = tuple[int, str]
 FunctionNode = ast.FunctionDef | ast.AsyncFunctionDef
 
@@ -384,3 +390,17 @@ def _nested_functions(function: FunctionNode) -> Iterator[FunctionNode]:
             yield node
         else:
             pending.extend(ast.iter_child_nodes(node))
+
+
+def patches_and_pokes(text: str) -> Iterator[Finding]:
+    """Lines of a test that put something in place of a part of the program, or reach into it.
+
+    Tests bind behaviour: a part may be exchanged by whoever is given another one, and looked at by
+    its public names. Where nothing else is possible a comment above says why: `# real need: ...`.
+    """
+    needed = -9
+    for number, line in enumerate(text.splitlines(), start=1):
+        if "# real need: " in line:
+            needed = number
+        elif PATCH.search(line) and number > needed + 2:
+            yield number, line.strip()

@@ -1,5 +1,6 @@
 """`Animator` gives what `solve` gives, frame by frame; `open_track` gives it back."""
 
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -236,3 +237,22 @@ def test_failing_animator_is_closed(frames: list[np.ndarray], tmp_path: Path) ->
             [animator.feed(pixels) for pixels in frames]
         with pytest.raises(trimotion.OptionError, match="closed; make another"):
             animator.feed(frames[3])
+
+
+def test_frames_from_two_threads_are_refused(frames: list[np.ndarray]) -> None:
+    """In one line: which came first nobody could say. One after the other they may."""
+    with trimotion.Animator((96, 64), **QUICK) as animator:
+        with animator._alone(), ThreadPoolExecutor(1) as other:
+            for call in (lambda: animator.feed(frames[0]), animator.finish):
+                with pytest.raises(trimotion.TrimotionError, match="another thread"):
+                    other.submit(call).result()
+        with ThreadPoolExecutor(1) as other:
+            found = other.submit(fed, animator, frames[:2]).result()
+        assert len(found) == 2
+
+
+@pytest.mark.parametrize("name", ["style", "styles", "size", "fit"])
+def test_what_draws_nothing_says_what_does(frames: list[np.ndarray], name: str) -> None:
+    """`triangulate` and `Animator` make triangles; looks belong to `draw`."""
+    with pytest.raises(trimotion.TrimotionError, match=r"\.draw\(\)"):
+        trimotion.triangulate(frames[0], **{name: "flat"})  # type: ignore[arg-type]

@@ -17,6 +17,7 @@ from tests.architecture_rules import (
     Module,
     foreign_paths,
     markdown_links,
+    patches_and_pokes,
     upward_arrow,
 )
 
@@ -198,6 +199,23 @@ def test_rooms_import_downwards() -> None:
     planted = [lower, Module("stages/high/b.py", "def f():\n    from stages.low import c")]
     assert set(upward_arrow(planted)) == {"stages/low", "stages/high"}
     assert not upward_arrow(planted[:1])
+
+
+@pytest.mark.parametrize("path", sorted((ROOT / "tests").glob("*.py")), ids=lambda path: path.name)
+def test_tests_bind_behaviour(path: Path) -> None:
+    """No test patches the program or touches what is private, without a reason."""
+    if path.name not in ("architecture_rules.py", "test_architecture.py"):
+        assert not list(patches_and_pokes(path.read_text(encoding="utf-8")))
+
+
+@pytest.mark.parametrize(
+    "line", ["monkeypatch.setattr(a, 'b', 1)", "patch.setitem(TABLE, 1, 2)", "x = team._job"]
+)
+def test_patch_is_found(line: str) -> None:
+    """Once; the environment, one's own fields and what has a reason may be touched."""
+    assert len(list(patches_and_pokes(line))) == 1
+    assert not list(patches_and_pokes(f"# real need: it takes an hour\n{line}"))
+    assert not list(patches_and_pokes("monkeypatch.setenv('A', '1')\nself._kept = 1"))
 
 
 def test_every_rule_is_planted() -> None:

@@ -1,6 +1,5 @@
 """Several inputs, or a folder: one output each, whatever becomes of the others."""
 
-import io
 import json
 import subprocess
 import sys
@@ -136,13 +135,15 @@ def test_one_input_is_no_batch(folder: Path) -> None:
     assert batch_of("render", [str(folder / "b.mtrk")], "o/") is None
 
 
-def test_piped_still_is_a_still(folder: Path, tmp_path: Path, monkeypatch) -> None:
+def test_piped_still_is_a_still(folder: Path, tmp_path: Path) -> None:
     """Also where a folder is named, and where no format is."""
     content = (folder / "a2.png").read_bytes()
-    monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(content)))
-    assert main(["animate", "-", "-o", f"{tmp_path}/", *QUICK]) == 0
+    program = [sys.executable, "-m", "pipeline.cli", "animate"]
+    subprocess.run(
+        [*program, "-", "-o", f"{tmp_path}/", *QUICK], cwd=ROOT, input=content, check=True
+    )
     assert probe(tmp_path / "standard input.png").kind == "image"
-    command = [sys.executable, "-m", "pipeline.cli", "animate", str(folder / "a2.png"), *QUICK]
+    command = [*program, str(folder / "a2.png"), *QUICK]
     run = subprocess.run([*command, "-o", "-"], cwd=ROOT, capture_output=True, check=True)
     assert run.stdout.startswith(b"\x89PNG")
     (tmp_path / "o.png").write_bytes(run.stdout)

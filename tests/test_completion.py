@@ -2,16 +2,17 @@
 
 import shutil
 import subprocess
+from contextlib import redirect_stdout
 from pathlib import Path
 
 import pytest
-from pipeline.options.output_size import NAMED_SIZES
 
 from pipeline import cli
 from pipeline.cli import main
 from pipeline.commands.completion import SHELLS
 from pipeline.commands.grammar import build_parser
 from stages.focus import FOCI
+from stages.look.output_size import NAMED_SIZES
 from warp_kernels.styles import STYLES
 
 # (line, the word that is completed, some of what is offered, what is not)
@@ -38,8 +39,7 @@ CASES = [
 def script(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The script for one of the shells, as the command prints it."""
     path: Path = tmp_path_factory.mktemp("completion") / request.param
-    with path.open("w") as file, pytest.MonkeyPatch.context() as patch:
-        patch.setattr("sys.stdout", file)
+    with path.open("w") as file, redirect_stdout(file):
         assert main(["completion", request.param]) == 0
     return path
 
@@ -104,7 +104,7 @@ def test_every_option_is_in_every_script(script: Path) -> None:
     """By its name: a new option needs nothing here."""
     text = script.read_text()
     for parser in build_parser().commands().values():
-        for action in parser._actions:
+        for action in parser.options():
             for flag in action.option_strings:
                 written = {"fish": f"-l {flag[2:]} " if flag[:2] == "--" else f"-s {flag[1:]} "}
                 assert written.get(script.name, flag) in text

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from pipeline.commands.grammar import build_parser
+from pipeline.commands.grammar import OneLineParser, build_parser
 
 ROOT = Path(__file__).parents[1]
 sys.path.append(str(ROOT / "benchmarks"))
@@ -91,13 +91,10 @@ def test_readme_stays_short() -> None:
     assert len(README.read_text("utf-8").splitlines()) < MOST_LINES
 
 
-def parsers(parser: argparse.ArgumentParser) -> Iterator[argparse.ArgumentParser]:
-    """A parser and those of its commands."""
-    yield parser
-    for action in parser._actions:
-        if isinstance(action, argparse._SubParsersAction):
-            for command in action.choices.values():
-                yield from parsers(command)
+def parsers() -> list[OneLineParser]:
+    """The program's parser and those of its commands."""
+    parser = build_parser()
+    return [parser, *parser.commands().values()]
 
 
 def test_every_option_is_told_of() -> None:
@@ -105,8 +102,8 @@ def test_every_option_is_told_of() -> None:
     told = set(re.findall(r"(?<![\w-])--?[a-zA-Z][\w-]*", text))
     options = {
         option
-        for parser in parsers(build_parser())
-        for action in parser._actions
+        for parser in parsers()
+        for action in parser.options()
         if action.help != argparse.SUPPRESS
         for option in action.option_strings
         if option.startswith("--")
@@ -120,8 +117,8 @@ def test_options_have_the_defaults_that_their_page_says() -> None:
     said = {flag: last for flags, last in rows for flag in re.findall(r"--[\w-]+", flags)}
     differing = {
         option: default[1]
-        for parser in parsers(build_parser())
-        for action in parser._actions
+        for parser in parsers()
+        for action in parser.options()
         for option in action.option_strings
         if (default := re.search(r"\(default: ([\w.]+)\)", action.help or ""))
         and option in said

@@ -68,6 +68,8 @@ def packages(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (folder / "trimotion_neon.py").write_text(code)
     install(folder, "more", {f"trimotion.{group}": names for group, names in GROUPS.items()})
     (folder / "more_members.py").write_text(MORE)
+    install(folder, "damaged", {"trimotion.styles": {}})
+    (folder / "damaged-1.0.dist-info" / "entry_points.txt").write_text("[trimotion.styles]\nx")
     (folder / "failing_module.py").write_text("raise RuntimeError('planted')")
     return folder
 

@@ -39,7 +39,7 @@ from tests import media_samples as samples
 from tests.jobs import job_of
 from tests.kernel_samples import frame_of
 from tests.test_coverage import grid_mesh
-from tests.tracks import QUICK, rows_of, solve_to
+from tests.tracks import QUICK, InTurn, rows_of, solve_to
 from warp_kernels.device.device import Device
 from warp_kernels.errors import OptionError
 
@@ -289,8 +289,8 @@ def test_ranges_resume_and_jobs_are_the_whole(clip: Path, whole: Path, tmp_path:
         assert rows_of(track)["meshes"] == rows["meshes"][: last + 1]
         solve_to(track, clip, resume=True)
         assert rows_of(track) == rows
-    job = job_of(clip, track=tmp_path / "j.mtrk", triangulate=QUICK, jobs=2)
-    solve(job.solve, job.output, job.run, Progress())
+    job = job_of(clip, track=tmp_path / "j.mtrk", triangulate=QUICK)
+    solve(job.solve, job.output, job.run, Progress(), runner=InTurn())
     assert rows_of(tmp_path / "j.mtrk")["meshes"] == rows["meshes"]
 
 

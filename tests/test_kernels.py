@@ -40,6 +40,7 @@ class Cache:
     def __init__(self, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         self.folder = folder
         self.events: list[Any] = []
+        # real need: who compiles what, and when, cannot be seen once it is done
         monkeypatch.setattr(wp.config, "kernel_cache_dir", str(folder))
         monkeypatch.setattr(compiling.wp, "load_module", self.load)
 
@@ -101,6 +102,7 @@ def test_a_failure_ends_the_others(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     def fail(module: Any, device: Any) -> None:
         raise OSError("full")
 
+    # real need: no kernel of the program fails to compile
     monkeypatch.setattr(compiling.wp, "load_module", fail)
     with pytest.raises(OSError, match="full"):
         Kernels(CPU, cache.tell).make_ready(cache.kernel("a"))

@@ -199,3 +199,23 @@ def test_importance_map_is_read_as_grey(name: str, tmp_path: Path) -> None:
     layout = parse_member("--layout", f"importance:{tmp_path / name}", LAYOUTS)
     assert isinstance(layout, Importance)
     np.testing.assert_allclose(layout.importance_map, picture[..., 0] / 255.0, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("stack", "told"),
+    [
+        ("paper hatching", "hatching hides paper below it; hatching:paper=none lets it through"),
+        ("paper hatching:paper=none", None),
+        ("circles flat edges", "flat hides circles below it"),
+        ("flat paper:color=#fff,blend=multiply", None),
+        ("flat texture:cushion", None),
+        ("flat gradient:opacity=0.5", None),
+        ("hatching", None),
+    ],
+)
+def test_styles_that_cannot_be_seen_are_told(stack: str, told: str | None) -> None:
+    """What lies below an opaque one is drawn for nothing."""
+    styles = [word for spec in stack.split() for word in ("--style", spec)]
+    notes = build_job(parse(*styles)).look.hidden
+    assert [note for note in notes if told and told in note] == notes
+    assert len(notes) == (told is not None)

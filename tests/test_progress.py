@@ -127,9 +127,7 @@ def test_summary_of_nothing_divides_by_nothing() -> None:
     assert str(Summary(1, 1.0, 0.0, Path("a.png"))).startswith("1 frame in")
 
 
-def test_every_member_tells_of_kernels_as_it_tells_of_frames(
-    monkeypatch: pytest.MonkeyPatch, capsys
-) -> None:
+def test_every_member_tells_of_kernels_as_it_tells_of_frames(capsys) -> None:
     """At once that there are some, then how far it is; nothing with `none`."""
     for name in ("plain", "json", "none"):
         progress = open_progress(name)
@@ -142,14 +140,14 @@ def test_every_member_tells_of_kernels_as_it_tells_of_frames(
     assert plain[1:] == ["compiling kernels 0/3", "compiling kernels 3/3"]
     events = [json.loads(line) for line in told.out.splitlines()]
     assert [(e["done"], e["total"]) for e in events] == [(0, None), (0, 3), (1, 3), (2, 3), (3, 3)]
-    monkeypatch.setattr(sys, "stderr", Terminal())
-    bar = open_progress("bar")
-    bar.kernels(0, 3)
-    bar.kernels(2, 3)
-    bar.frame(1, 9, 700, 20.0)
-    bar.close()
-    assert "2/3" in sys.stderr.getvalue()
-    assert "1/9" in sys.stderr.getvalue()
+    with redirect_stderr(Terminal()) as terminal:
+        bar = open_progress("bar")
+        bar.kernels(0, 3)
+        bar.kernels(2, 3)
+        bar.frame(1, 9, 700, 20.0)
+        bar.close()
+    assert "2/3" in terminal.getvalue()
+    assert "1/9" in terminal.getvalue()
 
 
 @pytest.mark.parametrize(
@@ -184,6 +182,7 @@ def test_a_bar_needs_room(columns: int, kind: str, expected: str) -> None:
 def test_plain_lines_of_a_long_job_are_bounded(monkeypatch: pytest.MonkeyPatch, capsys) -> None:
     """An hour is told in some hundred lines, and no minute goes by without one."""
     now = [1000.0]
+    # real need: nobody waits for an hour
     monkeypatch.setattr("time.perf_counter", lambda: now[0])
     progress, told = open_progress("plain"), []
     for done in range(1, 36001):

@@ -9,6 +9,7 @@ import sys
 import time
 from collections.abc import Callable, Sequence
 from contextlib import closing
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -16,15 +17,15 @@ import pytest
 from pipeline.cli import main
 from pipeline.loop.animate import animate, solve
 from pipeline.loop.plan import plan
-from pipeline.loop.ranges import InThisProcess, Part, Work
+from pipeline.loop.ranges import Part, Work
 from pipeline.loop.result import Animated
 from pipeline.options.solve_options import SolveOptions
 from pipeline.progress import Progress
 from pipeline.track import TrackReader, join
 from stages.media import FrameRange
 from tests import media_samples as samples
-from tests.jobs import changed, job_of
-from tests.tracks import COUNT, CUT, QUICK, QUICK_FLAGS, rows_of, solve_to, write_clip
+from tests.jobs import job_of
+from tests.tracks import COUNT, CUT, QUICK, QUICK_FLAGS, InTurn, rows_of, solve_to, write_clip
 from warp_kernels.errors import OptionError
 
 ROOT = Path(__file__).parents[1]
@@ -223,22 +224,20 @@ def test_joined_parts_are_the_whole(clip: Path, whole: Path, tmp_path: Path) -> 
 
 
 def test_two_processes_are_one(clip: Path, whole: Path, tmp_path: Path) -> None:
-    """Shots solved side by side; nothing is left beside the track."""
-    track = tmp_path / "t.mtrk"
-    job = job_of(clip, track=track, triangulate=QUICK, jobs=2, threads=1)
-    assert solve(job.solve, job.output, job.run, Progress()).frames == COUNT
+    """Shots solved side by side, then drawn: one progress that counts to the end once, in order.
+
+    Nothing is left beside the output and the track.
+    """
+    track, output, progress = tmp_path / "t.mtrk", tmp_path / "o.mkv", Counting()
+    job = job_of(clip, output, track=track, triangulate=QUICK, jobs=2, threads=1)
+    assert animate(job, progress).frames == COUNT
+    assert progress.told == [(done, COUNT) for done in range(1, COUNT + 1)]
     assert rows_of(track) == rows_of(whole)
-    assert list(tmp_path.iterdir()) == [track]
+    assert sorted(tmp_path.iterdir()) == [output, track]
 
 
 def test_one_after_the_other_is_one(clip: Path, whole: Path, tmp_path: Path) -> None:
     """Who solves the ranges is the caller's choice; progress counts all of them together."""
-
-    class InTurn(InThisProcess):
-        """Looks for shots although it solves them one by one."""
-
-        places = 9
-
     track, progress = tmp_path / "t.mtrk", Counting()
     job = job_of(clip, track=track, triangulate=QUICK, threads=1)
     done = solve(job.solve, job.output, job.run, progress, runner=InTurn())
@@ -252,10 +251,8 @@ def test_one_after_the_other_is_one(clip: Path, whole: Path, tmp_path: Path) -> 
 def test_failed_range_is_tried_again(clip: Path, whole: Path, tmp_path: Path) -> None:
     """What a runner loses half-way goes on from the track of its range, and so does the whole."""
 
-    class Failing(InThisProcess):
+    class Failing(InTurn):
         """Loses its second range after four frames."""
-
-        places = 2
 
         def run(self, work: Work, parts: Sequence[Part], progress: Progress) -> Sequence[Animated]:
             """Solve one range, then half of the other."""
@@ -267,8 +264,8 @@ def test_failed_range_is_tried_again(clip: Path, whole: Path, tmp_path: Path) ->
     with pytest.raises(KeyboardInterrupt):
         solve(job.solve, job.output, job.run, Progress(), runner=Failing())
     assert len(list(track.with_name("t.mtrk.parts").glob("*.mtrk"))) == 2
-    again = changed(job, resume=True, jobs=2)
-    solve(again.solve, again.output, again.run, progress)
+    again = replace(job.output, resume=True)
+    solve(job.solve, again, job.run, progress, runner=InTurn())
     assert rows_of(track) == rows_of(whole)
     assert CUT < progress.told[0][0] <= CUT + 5
     assert progress.told[-1] == (COUNT, COUNT)
@@ -323,14 +320,6 @@ def test_processes_end_with_the_first(tmp_path: Path) -> None:
     (longer,) = parts.glob("0-*.mtrk")
     with TrackReader(longer) as reader:
         assert len(reader.rows) < len(pictures)
-
-
-def test_processes_have_one_progress(clip: Path, tmp_path: Path) -> None:
-    """It counts to the end once, in order, though frames are solved and then drawn."""
-    progress = Counting()
-    job = job_of(clip, tmp_path / "o.mkv", triangulate=QUICK, jobs=2, threads=1)
-    animate(job, progress)
-    assert progress.told == [(done, COUNT) for done in range(1, COUNT + 1)]
 
 
 def test_animate_goes_on_with_its_track(clip: Path, tmp_path: Path) -> None:

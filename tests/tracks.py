@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from pipeline.loop.animate import solve
+from pipeline.loop.ranges import InThisProcess
 from pipeline.loop.result import Animated
 from pipeline.progress import Progress
 from pipeline.track.schema import TABLES
@@ -35,6 +36,12 @@ def solve_to(
     wanted = {"frame_range": FrameRange.parse(frames), "triangulate": QUICK, **options}
     job = job_of(clip, track=track, **wanted)
     return solve(job.solve, job.output, job.run, progress or Progress())
+
+
+class InTurn(InThisProcess):
+    """Solves ranges one by one, and looks for shots as if it had room for many at once."""
+
+    places = 9
 
 
 def rows_of(track: Path) -> dict[str, list[tuple]]:

@@ -7,7 +7,7 @@ with `neon = "my_package:Neon"`. It cannot replace one that is there.
 
 from collections.abc import Iterator, Mapping
 from dataclasses import is_dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -98,10 +98,9 @@ class Registry(Mapping[str, type[Kind]]):
         """What installed packages add, by name; nothing of it is imported yet."""
         if self._method is None:
             return {}
-        from importlib.metadata import entry_points
-
-        found = sorted(entry_points(group=f"trimotion.{self._kind}"), key=lambda e: e.name)
-        return {e.name: e for e in found if e.name not in self._homes}
+        group = f"trimotion.{self._kind}"
+        found = {entry.name: entry for entry in reversed(_installed()) if entry.group == group}
+        return {name: found[name] for name in sorted(found.keys() - self._homes.keys())}
 
     def origin(self, name: str) -> str:
         """The package that adds a member, with its version.
@@ -145,3 +144,17 @@ class Registry(Mapping[str, type[Kind]]):
                 "or remove it"
             ) from error
         return found
+
+
+@cache
+def _installed() -> "tuple[EntryPoint, ...]":
+    """All that installed packages add; what else is installed may be damaged."""
+    from importlib.metadata import distributions
+
+    found: list[EntryPoint] = []
+    for package in distributions():
+        try:
+            found += (e for e in package.entry_points if e.group.startswith("trimotion."))
+        except Exception:
+            continue
+    return tuple(found)

@@ -1,6 +1,7 @@
 """One run of `animate`, `solve` or `render`, and what is told of it."""
 
 import argparse
+import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -57,6 +58,31 @@ def _render(arguments: argparse.Namespace) -> "Animated":
             progress.warn(warning)
         result = render(made.job, track, made.info, progress)
         return _tell(progress, result, made.job.output.path)
+
+
+def preview_of(arguments: argparse.Namespace) -> str:
+    """Draw a few moments of what `animate` would make.
+
+    Args:
+        arguments: What the user gave.
+
+    Returns:
+        What is told of it.
+    """
+    place = arguments.output or ""
+    if not place or place.endswith(("/", os.sep)) or os.path.isdir(place):
+        place = os.path.join(place, f"{Path(arguments.source).stem}.preview.png")
+    job = _job(arguments, output=place)
+    from pipeline.commands.pipes import shown_name
+    from pipeline.commands.preview_sheet import as_json, make_preview, told
+
+    assert job.output.path is not None
+    with progress_for(arguments) as progress:
+        found = make_preview(job, progress)
+        for note in found.notes:
+            progress.note(note)
+    tell = as_json if arguments.json else told
+    return tell(found, shown_name(job.output.path))
 
 
 def _job(arguments: argparse.Namespace, **fixed: object) -> "Job":

@@ -25,6 +25,7 @@ commands:
   animate INPUT -o OUTPUT    convert a video, a still or numbered stills
   solve INPUT -o JOB.mtrk    convert to a mesh track, from which any look can be drawn
   render JOB.mtrk -o OUTPUT  draw a mesh track
+  preview INPUT              five moments of that, and the time that it would take
   plan INPUT                 ranges of whole shots, for runs on several machines
   join A.mtrk B.mtrk ... -o OUT.mtrk   put the tracks of ranges together
   info FILE                  what a file is: a source or a mesh track
@@ -68,6 +69,10 @@ class OneLineParser(argparse.ArgumentParser):
             self.error(_unknown(unknown, list(self._option_string_actions), command))
         return found, unknown
 
+    def options(self) -> list[argparse.Action]:
+        """Its options and arguments, for which argparse has no public name."""
+        return list(self._actions)
+
     def commands(self) -> dict[str, argparse.ArgumentParser]:
         """The parsers of its commands, by name."""
         for action in self._actions:
@@ -104,6 +109,7 @@ def build_parser() -> OneLineParser:
     _add_animate(commands)
     _add_solve(commands)
     _add_render(commands)
+    _add_preview(commands)
     _add_plan(commands)
     _add_join(commands)
     _add_info(commands)
@@ -161,6 +167,27 @@ def _add_render(commands: Any) -> None:
         "--source", metavar="INPUT", type=text_value, help="where the source is now"
     )
     add_job_options(parser, COMMAND_OPTIONS["render"])
+    _add_messages(parser)
+
+
+def _add_preview(commands: Any) -> None:
+    parser = _command(
+        commands,
+        "preview",
+        "Draw five moments of what animate would make, with the time that it would take.",
+        "trimotion preview INPUT [-o SHEET.png] [options of animate]",
+        WHERE_PARAMETERS,
+    )
+    parser.add_argument("source", metavar="INPUT", type=text_value, help="what FFmpeg reads")
+    parser.add_argument(
+        "-o",
+        "--output",
+        metavar="SHEET.png",
+        type=text_value,
+        help="a still (default: the name of the input and .preview.png, in this folder)",
+    )
+    parser.add_argument("--json", action="store_true", help="print figures as JSON")
+    add_job_options(parser, COMMAND_OPTIONS["preview"])
     _add_messages(parser)
 
 

@@ -59,7 +59,7 @@ def _facts(track: TrackReader) -> dict[str, object]:
         "model": header.model.name,
         "source": to_plain(header.source),
         "info": header.info.as_dict(),
-        "options": dict(header.options),
+        "options": {**header.options, "focus": spelled(header.solve.foci).split()},
         "focus": spelled(header.solve.foci),
         "frames": [dataclasses.asdict(row) for row in track.rows],
     }
@@ -80,13 +80,18 @@ def _track_rows(track: TrackReader) -> list[tuple[str, str]]:
         ("frames", ends),
         ("shots", f"{len(shots)}, from frames {starts}" if shots else "none"),
         ("colours", header.model.name),
-        ("focus", spelled(header.solve.foci)),
+        ("focus", _focus(spelled(header.solve.foci))),
     ]
     if rows:
         counts = [row.triangle_count for row in rows]
         told.append(("triangles", f"{min(counts)} to {max(counts)}"))
         told.append(("mean rmse", f"{sum(row.rmse for row in rows) / len(rows):.2f}"))
     return told
+
+
+def _focus(spelled: str) -> str:
+    """Where errors counted more; what `auto` means is not in its name."""
+    return f"{spelled} (faces, where there are any)" if spelled == "auto" else spelled
 
 
 def _rows(info: MediaInfo) -> list[tuple[str, str]]:

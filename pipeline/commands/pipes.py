@@ -15,7 +15,7 @@ from pipeline.commands.inputs import PIPE, is_pipe
 from pipeline.options.output_name import is_still
 from warp_kernels.errors import MediaError, OptionError
 
-FORMATS = {"solve": ".mtrk", "join": ".mtrk"}
+FORMATS = {"solve": ".mtrk", "join": ".mtrk", "preview": ".png"}
 """Ending of an output whose name does not say, by the command; PNG or Matroska for the others."""
 _MADE = "standard output"
 

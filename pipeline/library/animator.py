@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from functools import partial
+from threading import Lock
 from typing import Any, Unpack, cast
 
 from pipeline.envelope import Solved
@@ -52,6 +53,7 @@ class Animator:
         self._frames: dict[int, Frame] = {}
         self._line: Pushed[Frame, Solved] | None = None
         self._is_closed = False
+        self._at_work = Lock()
         self._stack = ExitStack()
         with ExitStack() as failing:
             device = failing.enter_context(opened_device(self._run.device, self._run.threads))
@@ -77,8 +79,13 @@ class Animator:
             The frames that are ready, in order; none while a decision is pending.
 
         Raises:
-            OptionError: If the array has another size or kind, or the animator is closed.
+            OptionError: If the array has another size or kind, or the animator is closed or at work
+                in another thread.
         """
+        with self._alone():
+            return self._fed(pixels, new_shot=new_shot)
+
+    def _fed(self, pixels: Any, *, new_shot: bool) -> list[Triangulation]:
         self._check_open()
         frame = frame_of(pixels, self._count)
         if (frame.width, frame.height) != self._size:
@@ -100,12 +107,13 @@ class Animator:
         """Give the frames back that are still held; what is fed later begins a new shot.
 
         Raises:
-            OptionError: If the animator is closed.
+            OptionError: If the animator is closed, or at work in another thread.
         """
-        self._check_open()
-        with self._closed_by_failure():
-            ready = self._rest()
-        return self._told(ready)
+        with self._alone():
+            self._check_open()
+            with self._closed_by_failure():
+                ready = self._rest()
+            return self._told(ready)
 
     def close(self) -> None:
         """Release the device; frames that are held back are dropped."""
@@ -125,6 +133,19 @@ class Animator:
     def _check_open(self) -> None:
         if self._is_closed:
             raise OptionError("the animator is closed; make another one")
+
+    @contextmanager
+    def _alone(self) -> Iterator[None]:
+        """Frames are one after the other: which came first, two threads could not say."""
+        if not self._at_work.acquire(blocking=False):
+            raise OptionError(
+                "the animator is at work in another thread; feed it from one thread, or make an "
+                "animator for each clip"
+            )
+        try:
+            yield
+        finally:
+            self._at_work.release()
 
     @contextmanager
     def _closed_by_failure(self) -> Iterator[None]:

@@ -102,6 +102,9 @@ def _kind(value: object) -> str:
 
 def _unknown(function: str, name: str) -> str:
     """What to say about a keyword that a function does not have."""
+    drawn = next((n for n in (name, f"{name}s") if n in options_of("draw")), None)
+    if drawn is not None and function in ("triangulate", "Animator"):
+        return f"{name}: {function} draws nothing; give {drawn} to .draw() of what it returns"
     others = [other for other in TAKEN if name in options_of(other)]
     if others:
         owners = ", ".join(others)

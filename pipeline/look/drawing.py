@@ -36,6 +36,7 @@ class Drawing:
         options, look, output = job.solve, job.look, job.output
         assert output.path is not None
         self._framing = look.framing_for(picture, info.sample_aspect)
+        self._hidden = look.hidden
         self._backdrop = look.backdrop(options.model)
         masked = tuple(region.style for region in look.regions)
         followed = tuple(i for i, region in enumerate(look.regions) if region.frames)
@@ -61,7 +62,7 @@ class Drawing:
     @property
     def notes(self) -> list[str]:
         """Choices that were made, one sentence each; complete after the block."""
-        return [*_fitted(self._framing), *self._encoder.notes]
+        return [*self._hidden, *_fitted(self._framing), *self._encoder.notes]
 
     def draw(self, solved: Solved) -> None:
         """Draw and encode a frame, or an earlier one that has been waiting for it."""

@@ -145,6 +145,7 @@ COMMAND_OPTIONS: dict[str, Callable[[Option], bool]] = {
         (o.group in ("range", "look", "output") and o.dest not in _SOURCE_ONLY)
         or o.dest in ("device", "threads")
     ),
+    "preview": lambda o: o.dest not in ("track", "resume", "jobs"),
     "plan": lambda o: o.group == "range" or o.dest == "cuts",
     "measure": lambda o: o in RANGE_OPTIONS,
 }
@@ -175,9 +176,10 @@ def add_job_options(
 
 
 def commands_with(flag: str) -> list[str]:
-    """Commands that have an option of a job, by its name without dashes in front."""
+    """Commands that have an option of a job, by its name; `preview` has those of `animate`."""
     found = [option for option in job_options() if option.flag == flag]
-    return [name for name, has in COMMAND_OPTIONS.items() if any(map(has, found))]
+    owners = [name for name, has in COMMAND_OPTIONS.items() if any(map(has, found))]
+    return [name for name in owners if name != "preview"]
 
 
 def registry_help() -> str:

@@ -170,6 +170,19 @@ class Look:
                 return None if style.ground is None else parse_color(style.ground)
         return None
 
+    @property
+    def hidden(self) -> list[str]:
+        """What is told of styles that cannot be seen, one sentence each."""
+        names = [type(style).__name__.lower() for style in self.styles]
+        for place in range(len(names) - 1, 0, -1):
+            if self.styles[place].hides_below:
+                below = ", ".join(dict.fromkeys(names[:place]))
+                remedy = "styles are laid from bottom to top"
+                if hasattr(self.styles[place], "paper"):
+                    remedy = f"{names[place]}:paper=none lets it through"
+                return [f"--style {names[place]} hides {below} below it; {remedy}"]
+        return []
+
     def framing_for(self, source: tuple[int, int], sample_aspect: Fraction) -> Framing:
         """Where the picture lies on the output.
 

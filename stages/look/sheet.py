@@ -40,6 +40,18 @@ def sheet_of(pictures: Sequence[np.ndarray], captions: Sequence[str], columns: i
     return sheet
 
 
+def of_width(pictures: Sequence[np.ndarray], width: int) -> list[np.ndarray]:
+    """Pictures scaled to one width [px], and to the height that this gives the first one.
+
+    Args:
+        pictures: Code values, [H, W, 3] uint8.
+        width: Columns of each.
+    """
+    rows, columns = pictures[0].shape[:2]
+    size = (width, max(1, round(rows * width / columns)))
+    return [cv2.resize(picture, size, interpolation=cv2.INTER_AREA) for picture in pictures]
+
+
 def _write(sheet: np.ndarray, text: str, at: tuple[int, int], width: int) -> None:
     """Write a line that is at most so wide [px]."""
     font = cv2.FONT_HERSHEY_DUPLEX

@@ -82,6 +82,11 @@ class Style:
         return self.covers and self.opacity == 1.0
 
     @property
+    def hides_below(self) -> bool:
+        """Whether nothing of what lies below can be seen."""
+        return self.is_opaque and self.blend == "normal"
+
+    @property
     def ground(self) -> str | None:
         """The colour of a sheet that it lays under everything, or None."""
         return None

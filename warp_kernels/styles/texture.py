@@ -31,6 +31,11 @@ class Texture(Style):
     prepare = Imported("warp_kernels.styles.shaders.texture:prepare_texture")
     portraits: ClassVar[tuple[str, ...]] = ("texture:cushion", "texture:triangle")
 
+    @property
+    def hides_below(self) -> bool:
+        """Never: it is what lies below that it makes brighter and darker."""
+        return False
+
     def numbers(self) -> tuple[float, ...]:
         """Strength."""
         return (self.strength,)

@@ -6,8 +6,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from pipeline.options.command_line import job_options
-from pipeline.options.output_size import NAMED_SIZES
 from pipeline.options.presets import shipped_presets
+from stages.look.output_size import NAMED_SIZES
 
 MOST_LETTERS = 70
 """Letters of a description."""
