@@ -119,5 +119,8 @@ def make(file: str, made: set[str], keep: bool) -> None:
 
 def read_by(command: str) -> list[str]:
     """Give the files of `out/` that a command reads; of numbered stills the pattern."""
-    words = (word for word in words_of(command) if word.startswith("out/"))
-    return [word for word in words if word != written_by(command)]
+    words = words_of(command)
+    written = {written_by(command)}
+    if "animate" in words and "--track" in words:
+        written.add(words[words.index("--track") + 1])
+    return [word for word in words if word.startswith("out/") and word not in written]

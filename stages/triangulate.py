@@ -18,6 +18,7 @@ from stages.solve.color_limits import Limiter
 from stages.solve.color_owners import color_owners
 from stages.solve.convergence import Convergence
 from stages.solve.quality import FALL, Trial, smallest_that_reaches
+from stages.solve.steady_colors import steadied
 from stages.spaces import SPACES
 from stages.topology import TOPOLOGIES
 from stages.topology.appraise import Appraiser
@@ -157,7 +158,7 @@ class Triangulator:
             frame: The frame.
             seed: The previous frame's mesh, carried along by the motion.
             earlier: What was given for the previous frame, here or to `recall`: by it is told where
-                the picture boils; None if it does not.
+                the picture boils, and colours keep to its; None for neither.
         """
         self._load(frame)
         iterations = self.options.frame_iterations
@@ -179,7 +180,7 @@ class Triangulator:
                 break
             mesh = self._approximator.topology.adapt(mesh, self._appraiser, goal)
             mesh = self._follow(mesh, seed, spring, each, frame.weights)
-        return self._solution(frame, self._approximator.within_limits(mesh, goal))
+        return self._solution(frame, self._approximator.within_limits(mesh, goal), earlier)
 
     def _renew(
         self,
@@ -288,9 +289,7 @@ class Triangulator:
         mesh = self._approximator.approximate(mesh, goal)
         if self.options.refine.quality is None or self._fitting is not self._even.workspace:
             return Trial(mesh, self._rmse(mesh))
-        return Trial(
-            mesh, self._snapshot(frame, mesh).rmse
-        )  # colours that were moved cost a little
+        return Trial(mesh, self._snapshot(frame, mesh).rmse)  # moved colours cost a little
 
     def _rmse(self, mesh: Mesh) -> float:
         """Root mean square error per channel, of all pixels alike [code values of the space]."""
@@ -302,17 +301,19 @@ class Triangulator:
         refine = self.options.refine
         return Goal(count, refine.error, calm, refine.largest_area, unrest)
 
-    def _solution(self, frame: Frame, mesh: Mesh) -> Snapshot:
+    def _solution(self, frame: Frame, mesh: Mesh, earlier: Snapshot | None = None) -> Snapshot:
         """The snapshot of a mesh that was just optimised, and that the next frame starts from."""
-        snapshot = self._snapshot(frame, mesh)
+        snapshot = self._snapshot(frame, mesh, earlier)
         self._solved = replace(snapshot, energies=self._even.appraiser.energies(mesh))
         return snapshot
 
-    def _snapshot(self, frame: Frame, mesh: Mesh) -> Snapshot:
+    def _snapshot(self, frame: Frame, mesh: Mesh, earlier: Snapshot | None = None) -> Snapshot:
         """Fit the colours to a mesh that was just optimised, by all pixels alike."""
         fitting = self._fitting
         place_mesh(fitting, mesh)
         coefficients, energies, counts = fitting.fit()
+        if earlier is not None:
+            coefficients, energies = steadied(earlier, mesh, counts, coefficients, energies)
         coefficients, energies, limits = self._limiter.limit(mesh, coefficients, energies)
         owners = color_owners(mesh, counts)
         return Snapshot(

@@ -150,6 +150,12 @@ def test_styles_are_told_of_as_the_registry_has_them() -> None:
     assert style_tables.renewed(text) == text, "run benchmarks/style_tables.py --write"
 
 
+def assert_can_be_made(file: str) -> None:
+    """A command writes it, and others all that this one reads."""
+    for other in doc_commands.read_by(doc_commands.command_for(file)):
+        assert_can_be_made(other)
+
+
 @pytest.mark.parametrize("page", PAGES, ids=relative)
 def test_figures_name_files_that_a_command_makes(page: Path) -> None:
     figures = list(readme_figures.figures(page))
@@ -157,7 +163,7 @@ def test_figures_name_files_that_a_command_makes(page: Path) -> None:
     for figure in figures:
         assert figure.what in {*readme_figures.TOLD, *readme_figures.MEASURED}
         for file in figure.files:
-            doc_commands.command_for(file)
+            assert_can_be_made(file)
 
 
 def test_pictures_are_made_by_commands_of_the_pages() -> None:
@@ -167,4 +173,4 @@ def test_pictures_are_made_by_commands_of_the_pages() -> None:
     assert drawn == {path.stem for path in readme_pictures.IMAGES.iterdir()} - painted
     for picture in readme_pictures.PICTURES.values():
         for file in {file for row in picture.rows for file, _ in row if file.startswith("out/")}:
-            doc_commands.command_for(file)
+            assert_can_be_made(file)

@@ -32,10 +32,13 @@ from stages.focus.search import OPENING, SURE, FaceSearch
 from stages.frame import Frame
 from stages.layouts.importance import Importance
 from stages.media import open_decoder, probe
+from stages.motion.advect import Carried
+from stages.motion.springs import FIRMEST, springs_of
 from stages.triangulate import Triangulator
 from tests import media_samples as samples
 from tests.jobs import job_of
 from tests.kernel_samples import frame_of
+from tests.test_coverage import grid_mesh
 from tests.tracks import QUICK, InTurn, rows_of, solve_to
 from warp_kernels.device.device import Device
 from warp_kernels.errors import OptionError
@@ -347,6 +350,33 @@ def test_small_faces_keep_their_strength(portrait: np.ndarray) -> None:
     assert emphasis([Face(places, 25, share=0.5)], (100, 100)).max() < 7
 
 
+def test_faces_of_many_triangles_count_more() -> None:
+    """They are harder to better, and their eyes need no more help; few triangles change nothing."""
+    places = np.array([[50.0, 50.0], [40.0, 42.0], [60.0, 42.0], [50.0, 64.0]])
+    face, size = Face(places, 50), (100, 100)
+    coarse, fine, finest = (emphasis([face], size, area) for area in (63.0, 20.0, 1.0))
+    np.testing.assert_array_equal(coarse, emphasis([face], size))
+    cheek, eye = (62, 32), (42, 40)
+    assert coarse[cheek] < fine[cheek] < finest[cheek] < 2.1 * coarse[cheek]
+    assert finest[eye] - finest[cheek] < coarse[eye] - coarse[cheek]
+
+
+@pytest.mark.parametrize("heavy", [0.01, 0.2, 0.6])
+def test_light_places_are_firm_and_heavy_ones_as_ever(heavy: float) -> None:
+    """The more triangles weights lead elsewhere, the firmer is what is left."""
+    weights = np.full((100, 100), UNIT, np.uint8)
+    weights[: round(100 * heavy)] = 10 * UNIT
+    mesh = grid_mesh(100, 100, 200)
+    seed = Carried(mesh, np.ones(mesh.vertex_count, np.float32))
+    strengths = springs_of(mesh, seed, 3.0, weights)[:, 2]
+    rows = np.clip(mesh.vertices[:, 1].astype(int), 0, 99)
+    is_heavy = weights[rows, 0] > UNIT
+    np.testing.assert_allclose(strengths[is_heavy], 3.0)
+    rest = strengths[~is_heavy]
+    assert np.ptp(rest) == 0
+    assert rest[0] == 3.0 if heavy > 0.5 else 3.0 < rest[0] <= 3.0 * FIRMEST
+
+
 @dataclass
 class FickleSearch:
     """Finds faces that come and go by chance, the same in the same frame; remembers nothing."""
@@ -385,7 +415,7 @@ def numbered(first: int, last: int) -> list[Frame]:
 
 def tracked(first: int, last: int, step: int = 1) -> dict[int, np.ndarray | None]:
     """What the faces of a shot add, by frame."""
-    tracks = FaceTracks(FickleSearch(), (100, 100), step, is_still=False)
+    tracks = FaceTracks(FickleSearch(), (100, 100), 50.0, step, is_still=False)
     frames = numbered(first, last)
     for frame in frames:
         tracks.see(frame, is_last=frame is frames[-1])

@@ -24,7 +24,7 @@ UNIT = 8
 """Weight of a pixel that counts once, so that an eighth can be told; the most is 255."""
 GAIN = 4.0
 """What a map adds where it is 1."""
-SMALL, AMPLE = 12.0, 40.0
+SMALL, AMPLE = 4.0, 12.0
 """Area of a triangle in the mean [px^2] up to which faces add nothing and from which all that they
 can: where triangles are hardly larger than pixels, more of them fit no better."""
 WINDOW = 6
@@ -70,8 +70,8 @@ class Attention:
         self.notes: list[str] = []
         """What was found, one sentence each; complete once the last frame was given."""
         self._found = False
-        area = info.width * info.height / max(1, triangles)
-        self._room = min(max((area - SMALL) / (AMPLE - SMALL), 0.0), 1.0)
+        self._area = info.width * info.height / max(1, triangles)
+        self._room = min(max((self._area - SMALL) / (AMPLE - SMALL), 0.0), 1.0)
         self._spelled = spelled(members)
 
     def beside(self, frames: Iterable[InShot]) -> Iterator[InShot]:
@@ -107,7 +107,7 @@ class Attention:
         assert self._search is not None
         size = (self._info.width, self._info.height)
         is_still = self._info.kind == "image"
-        return FaceTracks(self._search, size, self._step, is_still=is_still)
+        return FaceTracks(self._search, size, self._area, self._step, is_still=is_still)
 
     def _weighed(self, frame: Frame, parts: Sequence[_Part]) -> Frame:
         """A frame with the weights that all members together give it."""

@@ -56,15 +56,16 @@ class FaceTracks:
     Args:
         search: Finds faces.
         size: Width and height of the frames [px].
+        area: Of a triangle in the mean [px^2].
         step: Distance of the frames that are given, in numbers.
         is_still: Whether the source is a single picture, which is worth a longer search.
     """
 
     def __init__(
-        self, search: FaceSearch, size: tuple[int, int], step: int, *, is_still: bool
+        self, search: FaceSearch, size: tuple[int, int], area: float, step: int, *, is_still: bool
     ) -> None:
         self._search = search
-        self._size = size
+        self._size, self._area = size, area
         self._step = step
         self._opening = STILL if is_still else OPENING
         self._key: int | None = None
@@ -106,7 +107,7 @@ class FaceTracks:
             [H, W] float32, or None for nothing.
         """
         faces = self._faces.pop(index)
-        return emphasis(faces, self._size) if faces else None
+        return emphasis(faces, self._size, self._area) if faces else None
 
     def _known_at(self, frame: Frame, number: int) -> list[_Known]:
         """What is known at a key."""

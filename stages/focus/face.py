@@ -12,6 +12,10 @@ EYE_GAIN, EYE_RADII = 5.0, (0.12, 0.08)
 """The same over each eye; along the line through the eyes and across it [face sizes]."""
 MOUTH_GAIN, MOUTH_RADII = 4.0, (0.16, 0.1)
 """The same over the mouth."""
+DETAILED, RICHEST = 40.0, 2.0
+"""A face that more mean triangles than this would cover counts the more, with the root of their
+number, up to so many times: each of them brings less there, and of such a face there is more. Its
+eyes and mouth, which have triangles enough, count as much less."""
 REACH = 1.0
 """Beyond this distance from its middle a face adds nothing [face sizes]."""
 LEAST_RADIUS = 1.5
@@ -38,7 +42,7 @@ class Face:
         return middle
 
 
-def emphasis(faces: Sequence[Face], size: tuple[int, int]) -> np.ndarray:
+def emphasis(faces: Sequence[Face], size: tuple[int, int], area: float = np.inf) -> np.ndarray:
     """What faces add to the weight 1 of every pixel.
 
     Over a face a plateau, which leads triangles to its outline and shades; over eyes and mouth a
@@ -47,6 +51,7 @@ def emphasis(faces: Sequence[Face], size: tuple[int, int]) -> np.ndarray:
     Args:
         faces: The faces.
         size: Width and height of the picture [px].
+        area: Of a triangle in the mean [px^2].
 
     Returns:
         [H, W] float32, 0 far from every face.
@@ -56,7 +61,8 @@ def emphasis(faces: Sequence[Face], size: tuple[int, int]) -> np.ndarray:
     for face in faces:
         reach = int(np.ceil(REACH * face.size)) + 1
         left, top = np.floor(face.middle).astype(int) - reach
-        patch = _emphasis_of(face, left, top, 2 * reach)
+        richness = float(np.clip(face.size / np.sqrt(DETAILED * area), 1.0, RICHEST))
+        patch = _emphasis_of(face, left, top, 2 * reach, richness)
         columns = slice(*np.clip((left, left + 2 * reach), 0, width))
         rows = slice(*np.clip((top, top + 2 * reach), 0, height))
         window = added[rows, columns]
@@ -66,7 +72,7 @@ def emphasis(faces: Sequence[Face], size: tuple[int, int]) -> np.ndarray:
     return added
 
 
-def _emphasis_of(face: Face, left: int, top: int, side: int) -> np.ndarray:
+def _emphasis_of(face: Face, left: int, top: int, side: int, richness: float) -> np.ndarray:
     """What one face adds in a square of the picture.
 
     Args:
@@ -74,6 +80,7 @@ def _emphasis_of(face: Face, left: int, top: int, side: int) -> np.ndarray:
         left: Where the square begins [px].
         top: The same [px].
         side: Its side [px].
+        richness: How many times more the face counts, and less its features.
 
     Returns:
         [side, side] float32.
@@ -97,7 +104,8 @@ def _emphasis_of(face: Face, left: int, top: int, side: int) -> np.ndarray:
     middle, *eyes, mouth = face.places
     features = np.maximum(*(EYE_GAIN * bump(eye, EYE_RADII, 2) for eye in eyes))
     features = np.maximum(features, MOUTH_GAIN * bump(mouth, MOUTH_RADII, 2))
-    total = FACE_GAIN * bump(middle, (FACE_RADIUS, FACE_RADIUS), 4) + features
+    whole = FACE_GAIN * bump(middle, (FACE_RADIUS, FACE_RADIUS), 4)
+    total = richness * whole + features / richness
     distance = np.hypot(x - np.float32(middle[0]), y - np.float32(middle[1])) / face.size
     edge = np.clip((REACH - distance) / (0.2 * REACH), 0.0, 1.0)  # nothing ends with a step
     result = (face.share * edge * total).astype(np.float32)

@@ -39,9 +39,10 @@ def springs_of(
 def _firmness(weights: np.ndarray, points: np.ndarray) -> np.ndarray:
     """How much firmer springs are for the weights of a picture.
 
-    What pulls at a vertex grows with the weights around it, and so does its spring. The rest of
-    the picture has fewer triangles than without weights, which show more of every change: there
-    vertices are held the more firmly the more of them went elsewhere.
+    Most of a picture has fewer triangles than without weights, which show more of every change:
+    there vertices are held the more firmly the more of them went elsewhere. Where errors count
+    more than in the mean they are held as ever: what pulls at a vertex grows with the weight around
+    it and falls with the length of its edges, and such places should follow closely.
 
     Args:
         weights: [H, W] uint8.
@@ -50,9 +51,12 @@ def _firmness(weights: np.ndarray, points: np.ndarray) -> np.ndarray:
     Returns:
         1 where all weights are alike, [N].
     """
-    mean = float(weights.mean())
-    rest = (mean / float(np.median(weights))) ** REST_FIRMNESS
+    mean, usual = float(weights.mean()), float(np.median(weights))
+    if mean <= usual:
+        return np.ones(len(points))
+    rest = min((mean / usual) ** REST_FIRMNESS, FIRMEST)
     size = np.array(weights.shape[::-1])
     columns, rows = np.clip(points.astype(np.int64), 0, size - 1).T
-    firmer: np.ndarray = np.maximum(weights[rows, columns] / mean, min(rest, FIRMEST))
+    heavy = np.clip((weights[rows, columns] - usual) / (mean - usual), 0.0, 1.0)
+    firmer: np.ndarray = rest + heavy * (1.0 - rest)
     return firmer

@@ -8,6 +8,8 @@ from stages.snapshot import colors_at_centres
 from warp_kernels.energy.topology_survey import Survey
 from warp_kernels.energy.workspace import Workspace
 
+EMPHASIS = 0.5
+"""Power of the weights with which thresholds grow."""
 LEAST_EMPHASIS = 0.1
 """Emphasis of triangles that cover hardly a pixel, and least of all."""
 
@@ -62,7 +64,7 @@ class Appraiser:
         weights = np.maximum(self.counts / (mean * mesh.areas), LEAST_EMPHASIS)
         beside = np.where(mesh.twins[half_edges] >= 0, mesh.twins[half_edges], half_edges)
         heaviest: np.ndarray = np.maximum(weights[half_edges // 3], weights[beside // 3])
-        return heaviest
+        return heaviest**EMPHASIS
 
     def forget(self) -> None:
         """The picture has changed: what was measured is void."""

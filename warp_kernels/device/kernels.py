@@ -68,15 +68,19 @@ class Kernels:
         if not missing:
             return
         total = len(missing)
-        self._tell(0, total)
+        told = -1
 
         def look() -> None:
-            """Tell how far the process is that compiles."""
-            self._tell(total - len(_missing(dict(missing))), total)
+            """Tell how far it is, here or in the process that compiles, if that is news."""
+            nonlocal told
+            done = total - len(_missing(missing))
+            if done != told:
+                told = done
+                self._tell(done, total)
 
+        look()
         with waited_turn(folder, look):
-            left = _missing(missing)
-            self._compile(list(left), total)
+            self._compile(list(_missing(missing)), look)
 
     def _name(self, module: Any) -> str:
         """Of the folder of a compiled module."""
@@ -84,18 +88,15 @@ class Kernels:
         threads = 1 if self._device.is_cpu else None
         return str(module.get_module_identifier(threads))
 
-    def _compile(self, modules: list[Any], total: int) -> None:
-        """Compile modules side by side; `total` counts those of another process as well."""
-        if not modules:
-            return
-        done = total - len(modules)
+    def _compile(self, modules: list[Any], look: Callable[[], None]) -> None:
+        """Compile modules side by side, and look after each."""
         pool = _take_pool()
         try:
             jobs = [pool.submit(wp.load_module, module, self._device) for module in modules]
             for job in as_completed(jobs):
                 job.result()
-                done += 1
-                self._tell(done, total)
+                look()
+            look()
         finally:
             pool.shutdown(cancel_futures=True)
 

@@ -12,6 +12,7 @@ from av.stream import Disposition
 from av.video.stream import VideoStream
 
 from stages.media.reading.info import DEFAULT_MAX_PIXELS
+from stages.media.reading.pyav import LENIENT
 from warp_kernels.errors import MediaError, OptionError
 
 DAMAGE = (av.FFmpegError, UnicodeError, ValueError, MemoryError, OverflowError)
@@ -66,7 +67,7 @@ def open_container(
     }
     try:
         place = f"file:{path}" if content is None else io.BytesIO(content)
-        return av.open(place, "r", options=options, metadata_errors="replace")
+        return av.open(place, "r", options=options, **LENIENT)
     except av.error.PermissionError as error:
         raise MediaError(path, "may not be read", "check its permissions") from error
     except av.error.ArgumentError as error:
