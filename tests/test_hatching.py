@@ -215,7 +215,7 @@ def test_packed_tones_are_where_shaders_look() -> None:
 
 @pytest.mark.parametrize(
     ("parameter", "value"),
-    [("spacing", 0.5), ("weight", 0.9), ("colored", 1.5), ("seed", -1), ("paper", "blue")],
+    [("spacing", 0.5), ("weight", 0.9), ("colored", 1.5), ("seed", -1), ("paper", "bluish")],
 )
 def test_values_out_of_range_are_named(parameter: str, value: object) -> None:
     """One line that names the value."""
