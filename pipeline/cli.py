@@ -17,7 +17,7 @@ from typing import Any, NoReturn
 
 from pipeline.commands.crash_watch import watch_for_crashes
 from pipeline.commands.grammar import build_parser
-from pipeline.commands.inputs import joined, take
+from pipeline.commands.inputs import inputs_of, joined, take
 
 INTERRUPTED = 130
 TERMINATED = 143
@@ -78,7 +78,8 @@ def _piped(arguments: argparse.Namespace) -> AbstractContextManager[None]:
     """Files in place of `-`, if a name is one."""
     if "inputs" in arguments:
         take(arguments, arguments.inputs[0])
-    names = (getattr(arguments, key, None) or "" for key in ("source", "file", "output"))
+    keys = (*inputs_of(arguments), "output")
+    names = (getattr(arguments, key, None) or "" for key in keys)
     if not any(name.startswith("-") for name in names):
         return nullcontext()
     from pipeline.commands.pipes import piped

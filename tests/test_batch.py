@@ -95,7 +95,7 @@ def test_mistakes_are_told_before_work_begins(folder: Path, tmp_path: Path, caps
     assert "such as out/" in refused(capsys, "animate", *names, "-o", str(tmp_path / "o.mp4"))
     assert f"{tmp_path}/o/" in refused(capsys, "animate", str(folder), "-o", str(tmp_path / "o"))
     line = refused(capsys, "animate", *names, names[0], "-o", f"{tmp_path}/o/")
-    assert "all would become" in line
+    assert "a2.png: is named 2 times; name it once" in line
     assert "pipe" in refused(capsys, "animate", names[0], "-", "-o", f"{tmp_path}/o/")
     line = refused(capsys, "animate", str(folder / "deeper"), "-o", f"{tmp_path}/o/", code=3)
     assert "holds no film or picture" in line
@@ -105,6 +105,22 @@ def test_mistakes_are_told_before_work_begins(folder: Path, tmp_path: Path, caps
     track = ["--track", str(tmp_path / "t.mtrk")]
     assert "--track" in refused(capsys, "animate", *names, "-o", f"{tmp_path}/o/", *track)
     assert "side by side" in refused(capsys, "animate", "a.mp4", "-o", "b.mp4", "c.mp4")
+    assert not (tmp_path / "o").exists()
+
+
+def test_one_input_has_its_folder_made_too(folder: Path, tmp_path: Path, capsys) -> None:
+    """As several have it: `*.mp4` may match one file. Where nothing came to be none is left."""
+    quiet = [*QUICK, "--progress", "none"]
+    out = tmp_path / "new" / "out"
+    assert main(["animate", str(folder / "a2.png"), "-o", f"{out}/", *quiet]) == 0
+    assert main(["preview", str(folder / "a2.png"), "-o", f"{out}/look/", *quiet]) == 0
+    assert [path.name for path in (out / "look").iterdir()] == ["a2.preview.png"]
+    gone = tmp_path / "gone"
+    for inputs in ([folder / "broken.mov"], [folder / "broken.mov", folder / "b.mov"]):
+        assert main(["animate", *map(str, inputs), "-o", f"{gone}/deep/", *quiet]) == 3
+        assert not gone.exists()
+    capsys.readouterr()
+    refused(capsys, "animate", str(folder / "b.mp4"), "-o", f"{folder}/notes.txt/", code=4)
 
 
 @pytest.mark.parametrize(("first", "second"), [("a.avi", "a.mp4"), ("x/c.mov", "y/c.mov")])
@@ -148,6 +164,34 @@ def test_piped_still_is_a_still(folder: Path, tmp_path: Path) -> None:
     assert run.stdout.startswith(b"\x89PNG")
     (tmp_path / "o.png").write_bytes(run.stdout)
     assert cv2.imread(str(tmp_path / "o.png")).shape == (24, 32, 3)
+
+
+def test_track_through_a_pipe(folder: Path, tmp_path: Path, monkeypatch, capsys) -> None:
+    """What `solve -o -` writes `render -` draws; no command calls a track damaged."""
+    track, still = tmp_path / "t.mtrk", tmp_path / "o.png"
+    quiet = ["--progress", "none"]
+    assert main(["solve", str(folder / "a2.png"), "-o", str(track), *QUICK, *quiet]) == 0
+    for command in (["preview", str(track)], ["measure", str(folder / "a2.png"), str(track)]):
+        assert main(command) == 3
+        assert "is a mesh track" in capsys.readouterr().err
+    with track.open() as file:
+        # real need: standard input is the whole process's
+        monkeypatch.setattr(sys, "stdin", file)
+        assert main(["render", "-", "-o", str(still), *quiet]) == 0
+    assert probe(still).kind == "image"
+
+
+def test_errors_of_pipes_name_them(folder: Path, tmp_path: Path, monkeypatch, capsys) -> None:
+    """Nobody knows the temporary files in their place."""
+    with (folder / "broken.mov").open() as file:
+        # real need: standard input is the whole process's
+        monkeypatch.setattr(sys, "stdin", file)
+        line = refused(capsys, "animate", "-", "-o", str(tmp_path / "o.mp4"), code=3)
+    assert line.startswith("trimotion: error: -: not a readable media file")
+    line = refused(capsys, "animate", str(folder / "b.mp4"), "-o", "-.xyz")
+    assert line.startswith("trimotion: error: output -.xyz: files of ending")
+    assert "error: -o -: " in refused(capsys, "animate", str(folder), "-o", "-")
+    assert "one file" in refused(capsys, "render", "-", "--source", "-", "-o", "o.mp4")
 
 
 @pytest.mark.parametrize(

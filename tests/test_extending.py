@@ -42,7 +42,7 @@ GROUPS = {
     "layouts": {"cells": "more_members:Cells"},
     "flows": {"still": "more_members:Still", "dis": "more_members:Still"},
     "foci": {"spot": "more_members:Spot", "broken": "no_such_module:X"},
-    "styles": {"wrong": "json:loads", "failing": "failing_module:X"},
+    "styles": {"wrong": "json:loads", "failing": "failing_module:X", "leaving": "leaving_module:X"},
 }
 
 
@@ -71,6 +71,7 @@ def packages(tmp_path_factory: pytest.TempPathFactory) -> Path:
     install(folder, "damaged", {"trimotion.styles": {}})
     (folder / "damaged-1.0.dist-info" / "entry_points.txt").write_text("[trimotion.styles]\nx")
     (folder / "failing_module.py").write_text("raise RuntimeError('planted')")
+    (folder / "leaving_module.py").write_text("raise SystemExit('no license')")
     return folder
 
 
@@ -96,7 +97,12 @@ def test_members_are_listed(packages: Path) -> None:
         ("focus", "spot  A spot. [more 1.0]"),
     ):
         assert line in lines[lines.index(f"--{option}, from installed packages") :]
-    for name, word in (("failing", "planted"), ("wrong", "shader"), ("broken", "no_such_module")):
+    for name, word in (
+        ("failing", "planted"),
+        ("leaving", "SystemExit: no license"),
+        ("wrong", "shader"),
+        ("broken", "no_such_module"),
+    ):
         (line,) = (line for line in lines if line.startswith(f"{name}  "))
         assert f"{name}  cannot be used: the package more 1.0 does not work here" in line
         assert word in line

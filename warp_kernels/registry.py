@@ -137,7 +137,7 @@ class Registry(Mapping[str, type[Kind]]):
             found: Any = entry.load()
             if not (is_dataclass(found) and hasattr(found, str(self._method))):
                 raise TypeError(f"a dataclass with {self._method} is wanted")
-        except Exception as error:
+        except (Exception, SystemExit) as error:
             reason = " ".join(f"{type(error).__name__}: {error}".split())
             raise OptionError(
                 f"the package {self.origin(entry.name)} does not work here ({reason}); update it "

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from pipeline.options.output_name import FILMS, OTHER_FILMS, OTHER_STILLS, STILLS, output_in
-from warp_kernels.errors import MediaError, OptionError, OutputError
+from warp_kernels.errors import MediaError, OptionError
 
 TRACKS = frozenset({".mtrk"})
 """Endings of mesh tracks."""
@@ -60,7 +60,6 @@ def batch_of(command: str, inputs: Sequence[str], output: str) -> Batch | None:
     Raises:
         MediaError: If a folder holds nothing that the command takes.
         OptionError: If the output is no folder, or two inputs would have the same one.
-        OutputError: If the folder cannot be made.
     """
     if len(inputs) == 1 and not os.path.isdir(inputs[0]):
         return None
@@ -79,11 +78,6 @@ def batch_of(command: str, inputs: Sequence[str], output: str) -> Batch | None:
         Item(source, output_in(f"{output}/", source, _made(command, source))) for source in sources
     )
     _refuse_collisions(items)
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        reason = str(error.strerror).lower()
-        raise OutputError(folder, f"cannot be made ({reason})", "choose another folder") from error
     return Batch(items, folder, tuple(notes))
 
 
@@ -148,6 +142,8 @@ def _refuse_collisions(items: Sequence[Item]) -> None:
                 for other in items
                 if str(other.output).casefold() == str(item.output).casefold()
             ]
+            if len({os.path.realpath(source) for source in same}) == 1:
+                raise OptionError(f"{same[0]}: is named {len(same)} times; name it once")
             raise OptionError(
                 f"{_named(same)}: all would become {item.output}; give each a folder of its own"
             )

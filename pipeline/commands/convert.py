@@ -70,14 +70,16 @@ def preview_of(arguments: argparse.Namespace) -> str:
         What is told of it.
     """
     place = arguments.output or ""
+    new_folder = Path(place) if place.endswith(("/", os.sep)) else None
     if not place or place.endswith(("/", os.sep)) or os.path.isdir(place):
         place = os.path.join(place, f"{Path(arguments.source).stem}.preview.png")
     job = _job(arguments, output=place)
+    from pipeline.commands.output_folder import output_folder
     from pipeline.commands.pipes import shown_name
     from pipeline.commands.preview_sheet import as_json, make_preview, told
 
     assert job.output.path is not None
-    with progress_for(arguments) as progress:
+    with output_folder(new_folder), progress_for(arguments) as progress:
         found = make_preview(job, progress)
         for note in found.notes:
             progress.note(note)

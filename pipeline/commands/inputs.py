@@ -17,6 +17,16 @@ def take(arguments: argparse.Namespace, name: str) -> None:
     setattr(arguments, "track" if arguments.command == "render" else "source", name)
 
 
+def inputs_of(arguments: argparse.Namespace) -> tuple[str, ...]:
+    """Where the names of inputs stand that may be pipes.
+
+    Args:
+        arguments: What the user gave.
+    """
+    # Of the other commands the track is an output, or one of two files.
+    return ("source", "file", *(("track",) if arguments.command == "render" else ()))
+
+
 def joined(arguments: Sequence[str]) -> list[str]:
     """Arguments in which `-o -.png` is one word: apart from it the second looks like an option.
 

@@ -7,13 +7,13 @@ import argparse
 import shutil
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
-from pipeline.commands.inputs import PIPE, is_pipe
+from pipeline.commands.inputs import PIPE, inputs_of, is_pipe
 from pipeline.options.output_name import is_still
-from warp_kernels.errors import MediaError, OptionError
+from warp_kernels.errors import MediaError, OptionError, TrimotionError
 
 FORMATS = {"solve": ".mtrk", "join": ".mtrk", "preview": ".png"}
 """Ending of an output whose name does not say, by the command; PNG or Matroska for the others."""
@@ -29,29 +29,47 @@ def piped(arguments: argparse.Namespace) -> Iterator[None]:
 
     Raises:
         MediaError: If nothing comes through the pipe.
-        OptionError: If standard output is asked for twice.
+        OptionError: If standard input or output is asked for twice.
     """
     given = vars(arguments)
-    inputs = [key for key in ("source", "file") if given.get(key) == PIPE]
+    inputs = [key for key in inputs_of(arguments) if given.get(key) == PIPE]
     output = given.get("output") or ""
     writes = is_pipe(output) and arguments.command != "measure"
     if not inputs and not writes:
         yield
         return
+    if len(inputs) > 1:
+        raise OptionError("-: standard input is one file; give the other one a name")
     if writes and given.get("progress") == "json":
         raise OptionError("-o -: standard output is taken by --progress json; choose another")
     with tempfile.TemporaryDirectory(prefix="trimotion-") as folder:
+        received = Path(folder) / "standard input"
         for key in inputs:
-            setattr(arguments, key, str(_received(Path(folder) / "standard input")))
+            setattr(arguments, key, str(_received(received)))
         if not writes:
-            yield
+            with _told_as({received: PIPE}):
+                yield
             return
         made = Path(folder) / f"{_MADE}{output[1:] or _ending_for(arguments)}"
         arguments.output = str(made)
-        yield
+        with _told_as({received: PIPE, made: output}):
+            yield
         with made.open("rb") as file:
             shutil.copyfileobj(file, sys.stdout.buffer)
         sys.stdout.buffer.flush()
+
+
+@contextmanager
+def _told_as(names: Mapping[Path, str]) -> Iterator[None]:
+    """Errors name what the user wrote: nobody knows the files in its place."""
+    try:
+        yield
+    except TrimotionError as error:
+        text = str(error)
+        for path, name in names.items():
+            text = text.replace(str(path), name)
+        error.args = (text,)
+        raise
 
 
 def shown_name(path: Path) -> Path:

@@ -7,6 +7,7 @@ from pathlib import Path
 from pipeline.loop.preview import Moment, Preview, preview
 from pipeline.options.job import Job
 from pipeline.progress import Progress
+from pipeline.track import refuse_track
 from stages.look.sheet import of_width, sheet_of
 from stages.media import EncodeOptions, FrameRange, check_output, open_encoder, probe
 from warp_kernels.errors import OptionError
@@ -32,6 +33,7 @@ def make_preview(job: Job, progress: Progress) -> Preview:
     """
     path, encode = job.output.path, EncodeOptions(overwrite=job.output.overwrite, audio=False)
     assert path is not None
+    refuse_track(job.solve.source)
     info = probe(job.solve.source, read=job.solve.read)
     plan = check_output(path, info, (WIDTH, WIDTH), encode, ONE)
     if plan.container is not None or plan.pattern is not None:

@@ -4,12 +4,14 @@ import argparse
 import os
 import traceback
 from collections.abc import Callable
+from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING
 
 from pipeline.commands.batch import Batch, Item, batch_of
 from pipeline.commands.convert import convert, progress_for
 from pipeline.commands.inputs import take
+from pipeline.commands.output_folder import output_folder
 from warp_kernels.errors import OptionError
 
 if TYPE_CHECKING:
@@ -33,9 +35,21 @@ def convert_all(
     """
     batch = batch_of(arguments.command, arguments.inputs, arguments.output)
     if batch is None:
-        convert(arguments)
+        output = arguments.output
+        with output_folder(Path(output) if output.endswith(("/", os.sep)) else None):
+            convert(arguments)
         return 0
     _check_shared(arguments)
+    with output_folder(batch.folder):
+        return _convert_each(batch, arguments, report)
+
+
+def _convert_each(
+    batch: Batch,
+    arguments: argparse.Namespace,
+    report: Callable[[BaseException, argparse.Namespace], int],
+) -> int:
+    """Convert one input after the other; gives the exit code of the worst."""
     outcome = Outcome(batch)
     with progress_for(arguments) as progress:
         for note in batch.notes:

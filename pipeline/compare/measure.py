@@ -10,7 +10,7 @@ from pipeline.compare.report import FrameFigures, Report, squared_error
 from pipeline.compare.track_measures import TrackMeter
 from pipeline.loop.shots import detected_shots
 from pipeline.progress import Progress
-from pipeline.track import TrackReader
+from pipeline.track import TrackReader, refuse_track
 from stages.media import FrameRange, open_decoder
 
 
@@ -40,6 +40,8 @@ def measure(
         TrackError: If the track cannot be read or is not that of the source or of its frames.
         TrimotionError: If their shapes or their frames do not match.
     """
+    refuse_track(source)
+    refuse_track(output)
     with nullcontext() if track is None else TrackReader(track) as reader:
         meter = None if reader is None else TrackMeter(reader, source)
         if reader is not None and frame_range.is_whole:

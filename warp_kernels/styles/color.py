@@ -21,7 +21,7 @@ def parse_color(text: str) -> tuple[float, float, float]:
     name = text.lower().replace(" ", "")
     match = _FORM.fullmatch(COLOR_NAMES.get(name, text))
     if match is None:
-        similar = difflib.get_close_matches(name, COLOR_NAMES, n=1)
+        similar = difflib.get_close_matches(name, COLOR_NAMES, n=1, cutoff=0.65)
         hint = f" ({similar[0]}?)" if similar else ""
         raise OptionError(
             f"colour {text!r}: write #rgb or #rrggbb, for example #222, or a name of CSS{hint}"
