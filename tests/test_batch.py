@@ -123,6 +123,17 @@ def test_one_input_has_its_folder_made_too(folder: Path, tmp_path: Path, capsys)
     refused(capsys, "animate", str(folder / "b.mp4"), "-o", f"{folder}/notes.txt/", code=4)
 
 
+def test_tracks_beside_outputs_have_their_folder_made(folder: Path, tmp_path: Path) -> None:
+    """For several inputs and for one; without any, none is left."""
+    names = [str(folder / name) for name in ("b.mp4", "a2.png")]
+    tracks = tmp_path / "tracks"
+    for inputs, code in ((names, 0), (names[:1], 0), ([str(folder / "broken.mov")], 3)):
+        more = ["-o", f"{tmp_path}/o{code}/", "--track", f"{tracks}{code}/", "--overwrite"]
+        assert main(["animate", *inputs, *more, *QUICK, "--progress", "none"]) == code
+    assert sorted(path.name for path in Path(f"{tracks}0").iterdir()) == ["a2.mtrk", "b.mtrk"]
+    assert not Path(f"{tracks}3").exists()
+
+
 @pytest.mark.parametrize(("first", "second"), [("a.avi", "a.mp4"), ("x/c.mov", "y/c.mov")])
 def test_two_that_would_have_one_name(first: str, second: str, tmp_path: Path) -> None:
     """By their endings or their folders; names that differ by their endings alone are two."""

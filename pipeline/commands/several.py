@@ -8,7 +8,7 @@ from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING
 
-from pipeline.commands.batch import Batch, Item, batch_of
+from pipeline.commands.batch import TRACKS, Batch, Item, batch_of
 from pipeline.commands.convert import convert, progress_for
 from pipeline.commands.inputs import take
 from pipeline.commands.output_folder import output_folder
@@ -36,11 +36,12 @@ def convert_all(
     batch = batch_of(arguments.command, arguments.inputs, arguments.output)
     if batch is None:
         output = arguments.output
-        with output_folder(Path(output) if output.endswith(("/", os.sep)) else None):
+        folder = Path(output) if output.endswith(("/", os.sep)) else None
+        with output_folder(folder), output_folder(_tracks_of(arguments) if folder else None):
             convert(arguments)
         return 0
     _check_shared(arguments)
-    with output_folder(batch.folder):
+    with output_folder(batch.folder), output_folder(_tracks_of(arguments)):
         return _convert_each(batch, arguments, report)
 
 
@@ -105,12 +106,20 @@ class Outcome:
         return f"{told}: {self._batch.folder}{os.sep}{failed}"
 
 
+def _tracks_of(arguments: argparse.Namespace) -> Path | None:
+    """The folder that tracks go to beside the outputs, if one is named: no name of a track."""
+    track = None if arguments.command == "render" else getattr(arguments, "track", None)
+    if track is None or (Path(track).suffix.lower() in TRACKS and not os.path.isdir(track)):
+        return None
+    return Path(track)
+
+
 def _check_shared(arguments: argparse.Namespace) -> None:
     """Refuse one file that all outputs would share.
 
     Raises:
         OptionError: If a track is named for all.
     """
-    track = None if arguments.command == "render" else getattr(arguments, "track", None)
-    if track is not None and not os.path.isdir(track):
-        raise OptionError(f"--track {track}: several inputs: name a folder for them, {track}/")
+    track = getattr(arguments, "track", None)
+    if arguments.command != "render" and track is not None and _tracks_of(arguments) is None:
+        raise OptionError(f"--track {track}: several inputs: name a folder, such as tracks/")
