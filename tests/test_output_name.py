@@ -64,7 +64,8 @@ def test_commands_write_into_folders(clip: Path) -> None:
     assert probe(folder / clip.name).frame_count == 6
     assert probe(again / "clip.avi.mp4").frame_count == 6
     assert main(["animate", str(clip), "-o", str(clip.parent), "--overwrite", *QUICK]) == 4
-    assert main(["animate", str(clip), "-o", f"{clip.parent}/missing/", *QUICK]) == 4
+    assert main(["animate", str(clip), "-o", f"{clip.parent}/missing/", *QUICK]) == 0
+    assert probe(clip.parent / "missing" / clip.name).frame_count == 6
 
 
 def piped(arguments: list[str], given: bytes = b"") -> subprocess.CompletedProcess[bytes]:
