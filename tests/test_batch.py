@@ -108,6 +108,20 @@ def test_mistakes_are_told_before_work_begins(folder: Path, tmp_path: Path, caps
     assert not (tmp_path / "o").exists()
 
 
+@pytest.mark.parametrize("command", ["animate", "solve"])
+def test_a_mistake_that_all_share_is_told_once(
+    command: str, folder: Path, tmp_path: Path, capsys
+) -> None:
+    """Not once for each input, and no folder is made for it."""
+    preset = tmp_path / "wrong.toml"
+    preset.write_text('triangles = "many"')
+    names = [str(folder / name) for name in ("a2.png", "b.mp4")]
+    out = tmp_path / "out"
+    told = refused(capsys, command, *names, "-o", f"{out}/", "--preset", str(preset))
+    assert "triangles" in told
+    assert not out.exists()
+
+
 def test_one_input_has_its_folder_made_too(folder: Path, tmp_path: Path, capsys) -> None:
     """As several have it: `*.mp4` may match one file. Where nothing came to be none is left."""
     quiet = [*QUICK, "--progress", "none"]

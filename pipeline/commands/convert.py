@@ -8,7 +8,11 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from pipeline.loop.result import Animated
     from pipeline.options.job import Job
+    from pipeline.options.look import Look
+    from pipeline.options.output import Output
+    from pipeline.options.run import Run
     from pipeline.progress import Progress
+    from stages.media.frame_range import FrameRange
 
 
 def convert(arguments: argparse.Namespace) -> "Animated":
@@ -21,6 +25,23 @@ def convert(arguments: argparse.Namespace) -> "Animated":
     return {"animate": _animate, "solve": _solve, "render": _render}[arguments.command](arguments)
 
 
+def check_options(arguments: argparse.Namespace) -> None:
+    """Find mistakes in options, which several inputs share, before anything is done.
+
+    Args:
+        arguments: As for `convert`, with the names of one of the inputs.
+
+    Raises:
+        OptionError: If an option has an impossible value.
+    """
+    if arguments.command == "render":
+        _wanted(arguments)
+    elif arguments.command == "solve":
+        _solve_job(arguments)
+    else:
+        _job(arguments)
+
+
 def _animate(arguments: argparse.Namespace) -> "Animated":
     job = _job(arguments)
     with progress_for(arguments) as progress:
@@ -30,8 +51,7 @@ def _animate(arguments: argparse.Namespace) -> "Animated":
 
 
 def _solve(arguments: argparse.Namespace) -> "Animated":
-    # Looks, which a preset may hold, do not belong to a track.
-    job = _job(arguments, track=arguments.output, output=None, styles=(), regions=())
+    job = _solve_job(arguments)
     with progress_for(arguments) as progress:
         from pipeline.loop.animate import solve
 
@@ -40,17 +60,13 @@ def _solve(arguments: argparse.Namespace) -> "Animated":
 
 
 def _render(arguments: argparse.Namespace) -> "Animated":
-    from pipeline.options.build import build_render
-    from pipeline.track.kind import drawn_ending
-
-    path = Path(arguments.track)
     source = None if arguments.source is None else Path(arguments.source)
-    wanted = build_render(_given(arguments), path, drawn_ending(path))
+    wanted = _wanted(arguments)
     from pipeline.look.render_job import render_job
     from pipeline.loop.render import render
     from pipeline.track import TrackReader
 
-    with TrackReader(path) as track, progress_for(arguments) as progress:
+    with TrackReader(Path(arguments.track)) as track, progress_for(arguments) as progress:
         made = render_job(track, *wanted, source)
         for note in made.notes:
             progress.note(note)
@@ -85,6 +101,20 @@ def preview_of(arguments: argparse.Namespace) -> str:
             progress.note(note)
     tell = as_json if arguments.json else told
     return tell(found, shown_name(job.output.path))
+
+
+def _solve_job(arguments: argparse.Namespace) -> "Job":
+    """What is solved; looks, which a preset may hold, do not belong to a track."""
+    return _job(arguments, track=arguments.output, output=None, styles=(), regions=())
+
+
+def _wanted(arguments: argparse.Namespace) -> "tuple[FrameRange, Look, Output, Run]":
+    """What a track is drawn with."""
+    from pipeline.options.build import build_render
+    from pipeline.track.kind import drawn_ending
+
+    path = Path(arguments.track)
+    return build_render(_given(arguments), path, drawn_ending(path))
 
 
 def _job(arguments: argparse.Namespace, **fixed: object) -> "Job":

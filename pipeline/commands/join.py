@@ -33,7 +33,6 @@ def join_tracks(parts: Sequence[Path], output: Path, *, overwrite: bool) -> str:
     join(parts, output)
     with TrackReader(output) as track:
         rows = track.rows
-    return (
-        f"{len(parts)} tracks joined, frames {rows[0].frame} to {rows[-1].frame}, {len(rows)} in "
-        f"all: {shown_name(output)}"
-    )
+    joined = "1 track" if len(parts) == 1 else f"{len(parts)} tracks"
+    which = f"frames {rows[0].frame} to {rows[-1].frame}, {len(rows)} in all"
+    return f"{joined} joined, {which}: {shown_name(output)}"

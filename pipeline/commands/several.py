@@ -9,7 +9,7 @@ from time import perf_counter
 from typing import TYPE_CHECKING
 
 from pipeline.commands.batch import TRACKS, Batch, Item, batch_of
-from pipeline.commands.convert import convert, progress_for
+from pipeline.commands.convert import check_options, convert, progress_for
 from pipeline.commands.inputs import take
 from pipeline.commands.output_folder import output_folder
 from warp_kernels.errors import OptionError
@@ -41,6 +41,8 @@ def convert_all(
             convert(arguments)
         return 0
     _check_shared(arguments)
+    _aim(arguments, batch.items[0])
+    check_options(arguments)
     with output_folder(batch.folder), output_folder(_tracks_of(arguments)):
         return _convert_each(batch, arguments, report)
 
@@ -58,8 +60,7 @@ def _convert_each(
     for number, item in enumerate(batch.items, start=1):
         with progress_for(arguments) as progress:
             progress.file(number, len(batch.items), item.source, str(item.output))
-        take(arguments, item.source)
-        arguments.output = str(item.output)
+        _aim(arguments, item)
         try:
             outcome.add(convert(arguments))
         except Exception as error:  # the others do not depend on it
@@ -69,6 +70,12 @@ def _convert_each(
     with progress_for(arguments) as progress:
         progress.finish_all(outcome.as_line(), outcome.frames, list(outcome.failed), outcome.code)
     return outcome.code
+
+
+def _aim(arguments: argparse.Namespace, item: Item) -> None:
+    """Name one of the inputs and its output."""
+    take(arguments, item.source)
+    arguments.output = str(item.output)
 
 
 class Outcome:
