@@ -4,7 +4,6 @@ import dataclasses
 import operator
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from types import TracebackType
 from typing import Any
 
 from pipeline.library.given import file_name
@@ -106,12 +105,7 @@ class Track:
     def __enter__(self) -> "Track":
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.close()
 
     def __repr__(self) -> str:

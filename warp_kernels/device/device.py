@@ -14,7 +14,6 @@ import weakref
 from collections.abc import Callable, Sequence
 from functools import partial
 from threading import Lock, Thread
-from types import TracebackType
 from typing import Any
 
 import numpy as np
@@ -242,12 +241,7 @@ class Device:
     def __enter__(self) -> "Device":
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.close()
 
     def __repr__(self) -> str:
