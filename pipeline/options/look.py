@@ -31,6 +31,7 @@ class Look:
             "help": "look of the triangles, repeatable from bottom to top "
             "(default: flat, or gradient with --color linear)",
             "registry": STYLES,
+            "metavar": "SPEC",
             "flag": "style",
         },
     )
