@@ -1,0 +1,158 @@
+"""Beats as text, one a line: bare times, times with the beat of the bar, CSV, Audacity's labels.
+
+A line is a time [s, or m:ss], then what there may be: a second time at which it ends, and a word.
+A word that is a number is the place in the bar (`1` is a downbeat; ours are `bar.beat`); `beat`,
+`downbeat`, `onset` and their usual short forms say what begins there; any other word names a
+section, unless all lines have the same one.
+"""
+
+import math
+import re
+from dataclasses import dataclass
+
+import numpy as np
+
+from stages.hearing.heard import USUAL_METER, Heard, Mark, usual_bpm
+
+_BEATS = frozenset({"", "b", "beat", "x", "tick", "click"})
+_DOWNBEATS = frozenset({"db", "downbeat", "down", "bar", "measure", "|"})
+_ONSETS = frozenset({"o", "onset"})
+_IN_BAR = re.compile(r"(?:\d+\.)?(\d{1,2})|beat\s*(\d{1,2})", re.IGNORECASE)
+_MOST_IN_BAR = 16
+"""Larger numbers count the beats of the whole piece."""
+_CLOCK = re.compile(r"(?:(\d+):)?(\d+):(\d+(?:\.\d*)?)")
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A line of such a file."""
+
+    number: int
+    """Its place in the file, from 1."""
+    time: float
+    """When it is [s]."""
+    word: str
+    """What stands behind the times; empty for nothing."""
+
+
+def from_lines(text: str) -> Heard:
+    """Read beats and sections, in any of the forms above.
+
+    Args:
+        text: The file.
+
+    Raises:
+        ValueError: If a line is something else; the message begins with its number.
+    """
+    lines = sorted(_read(text), key=lambda line: line.time)
+    if not lines:
+        raise ValueError("holds no time")
+    words = {line.word.lower() for line in lines}
+    if len(words) == 1 and not _IN_BAR.fullmatch(min(words)):
+        words = {""}
+        lines = [Entry(line.number, line.time, "") for line in lines]
+    places = [_place(line.word) for line in lines]
+    counted = max((place for place in places if place is not None), default=0) > _MOST_IN_BAR
+    kinds = [line.word.lower() for line in lines]
+    beats, downbeats, onsets, marks = [], [], [], []
+    for line, word, place in zip(lines, kinds, places, strict=True):
+        if word in _ONSETS:
+            onsets.append(line.time)
+        elif place is not None or word in _BEATS | _DOWNBEATS:
+            beats.append(line.time)
+            if word in _DOWNBEATS or (place == 1 and not counted):
+                downbeats.append(line.time)
+        else:
+            marks.append(Mark(line.time, line.word))
+    kept = np.unique(beats)
+    meter = 0 if counted else max((place or 0 for place in places), default=0)
+    return Heard(
+        lines[-1].time,
+        usual_bpm(kept),
+        kept,
+        np.unique(downbeats),
+        np.unique(onsets),
+        sections=tuple(marks),
+        meter=meter or USUAL_METER,
+    )
+
+
+def as_labels(heard: Heard) -> str:
+    """Beats and sections as labels of Audacity: start, end and `bar.beat`, with tabs between.
+
+    Args:
+        heard: What was heard.
+    """
+    rows = [(mark.time, mark.name or "section") for mark in heard.sections]
+    places = np.searchsorted(heard.downbeats, heard.beats + 1e-6)
+    firsts = np.searchsorted(heard.beats, heard.downbeats - 1e-6)
+    for number, time in enumerate(heard.beats):
+        bar = int(places[number])
+        if bar:
+            rows.append((float(time), f"{bar}.{number - int(firsts[bar - 1]) + 1}"))
+        else:  # before the first downbeat: an upbeat, which counts backwards from the next bar
+            until = int(firsts[0]) - number if len(firsts) else 0
+            rows.append((float(time), f"0.{heard.meter - until + 1}" if until else "beat"))
+    rows.sort(key=lambda row: row[0])
+    return "".join(f"{time:.6f}\t{time:.6f}\t{word}\n" for time, word in rows)
+
+
+def _read(text: str) -> list[Entry]:
+    """The lines that hold a time; a heading before the first one and remarks are passed over."""
+    found: list[Entry] = []
+    for number, row in enumerate(text.split("\n"), start=1):
+        if not row.strip() or row.lstrip().startswith(("#", "\\", "//")):
+            continue  # a backslash begins the pitches of a label of Audacity
+        fields = _fields(row)
+        time = seconds_of(fields[0])
+        if time is None:
+            if found or number > 3:
+                raise ValueError(f"line {number}: {fields[0][:30]!r} is not a time")
+            continue
+        rest = fields[1:]
+        if len(rest) > 1 and seconds_of(rest[0]) is not None:
+            rest = rest[1:]  # where the label ends
+        elif len(rest) == 1 and "\t" in row and _is_end(rest[0], time):
+            rest = []  # a label of Audacity without a word
+        found.append(Entry(number, time, " ".join(rest).strip()))
+    return found
+
+
+def _is_end(field: str, time: float) -> bool:
+    """Whether a lone second number of a line is a time, and not the place in a bar."""
+    end = seconds_of(field)
+    return end is not None and "." in field and end >= time
+
+
+def _fields(row: str) -> list[str]:
+    """The fields of a line; where semicolons or tabs part them a comma may stand in a number."""
+    row = row.strip()
+    for sign in ("\t", ";", ","):
+        if sign in row:
+            fields = [field.strip().strip('"') for field in row.split(sign)]
+            if sign != "," and re.fullmatch(r"-?\d+,\d+", fields[0]):
+                fields[0] = fields[0].replace(",", ".")
+            return fields
+    return row.split(None, 1)
+
+
+def seconds_of(text: str) -> float | None:
+    """A time as a number of seconds; None if it is none, or below 0.
+
+    Args:
+        text: `12.5`, `1:02.5` or `1:00:02.5`.
+    """
+    clock = _CLOCK.fullmatch(text)
+    if clock:
+        return int(clock[1] or 0) * 3600 + int(clock[2]) * 60 + float(clock[3])
+    try:
+        time = float(text)
+    except ValueError:
+        return None
+    return time if math.isfinite(time) and time >= 0 else None
+
+
+def _place(word: str) -> int | None:
+    """The beat of the bar that a word names."""
+    match = _IN_BAR.fullmatch(word)
+    return int(match[1] or match[2]) if match else None
