@@ -8,11 +8,8 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from pipeline.commands.examples import ABOUT_ALL, EXAMPLES, shown
-from pipeline.options.command_line import (
-    add_job_options,
-    commands_with,
-    registry_help,
-)
+from pipeline.commands.style_list import registry_help
+from pipeline.options.command_line import COMMAND_OPTIONS, add_job_options, job_options
 from pipeline.options.nearest import nearest
 from pipeline.options.values import text_value, whole_number
 from pipeline.progress import CHOICES
@@ -375,7 +372,9 @@ def _unknown(arguments: Sequence[str], known: Sequence[str], command: str) -> st
     if not first.startswith("-"):
         apart = "; several inputs stand side by side" if command in SEVERAL else ""
         return f"{arguments[0]!r}: unknown argument{apart}"
-    owners = commands_with(first.lstrip("-"))
+    named = [option for option in job_options() if option.flag == first.lstrip("-")]
+    owners = [name for name, has in COMMAND_OPTIONS.items() if any(map(has, named))]
+    owners = [name for name in owners if name != "preview"]  # it has those of animate
     if owners:
         some = ", ".join(owners[:-1])
         owned = f"{some} and {owners[-1]}" if some else owners[-1]
