@@ -23,6 +23,7 @@ HEADINGS = {
     "triangles": "triangles",
     "motion": "motion",
     "look": "look",
+    "time": "change over time",
     "output": "output file",
     "run": "run",
     "processes": "processes",
@@ -142,7 +143,7 @@ COMMAND_OPTIONS: dict[str, Callable[[Option], bool]] = {
     "animate": lambda o: True,
     "solve": lambda o: o.group not in ("look", "output") or o.dest in ("overwrite", "resume"),
     "render": lambda o: (
-        (o.group in ("range", "look", "output") and o.dest not in _SOURCE_ONLY)
+        (o.group in ("range", "look", "time", "output") and o.dest not in _SOURCE_ONLY)
         or o.dest in ("device", "threads")
     ),
     "preview": lambda o: o.dest not in ("track", "resume", "jobs"),
