@@ -119,12 +119,12 @@ def agrees(hint: object, option: Option) -> bool:
     if hint is typing.Any:
         return True
     kinds = set(typing.get_args(hint)) or {hint}
-    is_optional = option.kind.endswith("| None")
+    is_optional = option.default is None and option not in RANGE_OPTIONS
     if option.is_repeatable:
         return kinds == {str, Sequence[str]}
-    wanted = TYPES.get(option.kind.removesuffix(" | None"), {str})
+    wanted = TYPES.get(option.kind, {str})
     may_be = [wanted, wanted | set(typing.get_args(Name))]
-    if option.kind.startswith("Fraction"):
+    if option.kind == "Fraction":
         may_be = [{str, float, Fraction}]
     elif option in RANGE_OPTIONS:
         may_be = [{str, int}, {str, float}]

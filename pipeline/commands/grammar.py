@@ -9,7 +9,6 @@ from typing import Any, NoReturn
 
 from pipeline.commands.examples import ABOUT_ALL, EXAMPLES, shown
 from pipeline.options.command_line import (
-    COMMAND_OPTIONS,
     add_job_options,
     commands_with,
     registry_help,
@@ -134,7 +133,7 @@ def _add_animate(commands: Any) -> None:
     _add_output(
         parser, "OUTPUT", "mp4, mov, mkv, webm, gif, a still, or stills such as shot_####.png"
     )
-    add_job_options(parser)
+    add_job_options(parser, "animate")
     _add_messages(parser)
 
 
@@ -148,7 +147,7 @@ def _add_solve(commands: Any) -> None:
     )
     _add_inputs(parser, "INPUT", "what FFmpeg reads, or a folder of it")
     _add_output(parser, "JOB.mtrk", "the mesh track")
-    add_job_options(parser, COMMAND_OPTIONS["solve"])
+    add_job_options(parser, "solve")
     _add_messages(parser)
 
 
@@ -166,7 +165,7 @@ def _add_render(commands: Any) -> None:
     parser.add_argument(
         "--source", metavar="INPUT", type=text_value, help="where the source is now"
     )
-    add_job_options(parser, COMMAND_OPTIONS["render"])
+    add_job_options(parser, "render")
     _add_messages(parser)
 
 
@@ -187,7 +186,7 @@ def _add_preview(commands: Any) -> None:
         help="a still (default: the name of the input and .preview.png, in this folder)",
     )
     parser.add_argument("--json", action="store_true", help="print figures as JSON")
-    add_job_options(parser, COMMAND_OPTIONS["preview"])
+    add_job_options(parser, "preview")
     _add_messages(parser)
 
 
@@ -203,7 +202,7 @@ def _add_plan(commands: Any) -> None:
         "--parts", metavar="N", type=whole_number, help="at most so many (default: one a shot)"
     )
     parser.add_argument("--json", action="store_true", help="print JSON")
-    add_job_options(parser, COMMAND_OPTIONS["plan"])
+    add_job_options(parser, "plan")
 
 
 def _add_join(commands: Any) -> None:
@@ -290,7 +289,7 @@ def _add_measure(commands: Any) -> None:
         help="what the output was drawn from; its frames are compared if no range is given",
     )
     parser.add_argument("--json", action="store_true", help="print JSON, with every frame")
-    add_job_options(parser, COMMAND_OPTIONS["measure"])
+    add_job_options(parser, "measure")
     _add_telling(parser.add_argument_group("messages"))
 
 

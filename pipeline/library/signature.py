@@ -45,5 +45,4 @@ def with_keywords(name: str) -> Callable[[Function], Function]:
 
 def _help(option: Option) -> str:
     """The help of an option; a switch is told as what it is when it is on."""
-    text = str(option.metadata["help"]) if option.is_switch else option.help
-    return in_keywords(text)
+    return in_keywords(option.help.removeprefix("do not "))

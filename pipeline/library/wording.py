@@ -44,7 +44,7 @@ def _reworded(match: re.Match[str]) -> str:
     gap, following = match["gap"] or "", match["next"] or ""
     option = _flags().get(match["flag"])
     if option is not None and option.is_switch:
-        return f"{option.dest}={option.switched}{gap}"
+        return f"{option.dest}={not option.default}{gap}"
     keyword = match["flag"].replace("-", "_") if option is None else keyword_of(option)
     # a message that begins with a flag has a colon behind its value
     leads = match.start() == 0 and ": " in match.string

@@ -12,7 +12,6 @@ from pipeline.options.members import parse_member, parse_region
 from pipeline.options.output import Output
 from pipeline.options.output_name import output_in
 from pipeline.options.run import Run
-from pipeline.options.solve_options import SolveOptions
 from stages.media.frame_range import FrameRange, parse_time
 from warp_kernels.errors import OptionError
 from warp_kernels.styles import STYLES
@@ -22,9 +21,7 @@ Part = TypeVar("Part")
 
 def build_job(given: Mapping[str, Any]) -> Job:
     """Make all options of a run from what a user gave, see `values_of`."""
-    values = values_of(given)
-    solve, look = fill(SolveOptions, values), fill(Look, values)
-    return Job(solve, look, fill(Output, values), fill(Run, values))
+    return fill(Job, values_of(given))
 
 
 def build_render(
@@ -32,9 +29,8 @@ def build_render(
 ) -> tuple[FrameRange, Look, Output, Run]:
     """Make what a track is drawn with; it names the output, with an ending, in a folder."""
     output = output_in(given["output"], track, ending)
-    values = values_of({**given, "output": str(output), "source": track, "track": None})
-    fill(SolveOptions, values)  # a preset may hold such options, and mistakes in them are told
-    return values["frame_range"], fill(Look, values), fill(Output, values), fill(Run, values)
+    job = build_job({**given, "output": str(output), "source": track, "track": None})
+    return job.solve.frame_range, job.look, job.output, job.run
 
 
 def values_of(given: Mapping[str, Any]) -> dict[str, Any]:
@@ -52,8 +48,9 @@ def values_of(given: Mapping[str, Any]) -> dict[str, Any]:
     if "source" in given:
         source = values["source"] = Path(given["source"])
         for name, field, ending in (("output", "path", None), ("track", "track", ".mtrk")):
-            if given.get(name) is not None:
-                values[field] = output_in(given[name], source, ending)
+            named = values.pop(name, None)
+            if named is not None:
+                values[field] = output_in(named, source, ending)
     if given.get("resume"):
         values["overwrite"] = True  # what is drawn from a track replaces what was drawn before
     for option in job_options():
@@ -75,11 +72,10 @@ def fill(cls: type[Part], values: Mapping[str, Any]) -> Part:
     """Make a dataclass and those inside it, each of the values that it knows by field name."""
     arguments = {}
     for field in dataclasses.fields(cls):  # type: ignore[arg-type]
-        nested = field.default_factory
         if field.name in values:
             arguments[field.name] = values[field.name]
-        elif isinstance(nested, type) and "registry" not in field.metadata:
-            arguments[field.name] = fill(nested, values)
+        elif isinstance(field.type, type) and dataclasses.is_dataclass(field.type):
+            arguments[field.name] = fill(field.type, values)
     return cls(**arguments)
 
 

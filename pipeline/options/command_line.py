@@ -4,10 +4,11 @@ import argparse
 import reprlib
 from argparse import ArgumentTypeError
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import MISSING, dataclass, fields
+from dataclasses import MISSING, Field, dataclass, fields, is_dataclass
 from fractions import Fraction
 from functools import cache, partial
-from typing import Any, cast
+from itertools import chain
+from typing import Any
 
 from pipeline.options.look import Look
 from pipeline.options.members import written
@@ -48,51 +49,27 @@ class Option:
     group: str
     """Key of its heading in `HEADINGS`."""
     kind: str
-    """Type of the field, such as `int | None`."""
-    default: Any
+    """Type of the field, such as `int`; `bool` is a switch, which stands alone."""
+    help: str
+    """What it does, with its default."""
+    metavar: str
+    """How its value is shown."""
+    default: Any = None
     """What is taken if it is not given, as it would be written."""
-    metadata: Mapping[str, Any]
-    """What the field says; see `pipeline.options.job`."""
+    choices: tuple[str, ...] | None = None
+    """The values that it may have, if they are few."""
+    registry: Registry[Any] | None = None
+    """The family whose members it names."""
 
     @property
     def is_switch(self) -> bool:
-        """Whether it stands alone, without a value."""
+        """Whether it stands alone, without a value; it sets its field to what is no default."""
         return self.kind == "bool"
-
-    @property
-    def switched(self) -> bool:
-        """What a switch sets its field to."""
-        return not self.default
 
     @property
     def is_repeatable(self) -> bool:
         """Whether every use adds a value."""
         return self.kind.endswith(", ...]")
-
-    @property
-    def registry(self) -> Registry[Any] | None:
-        """The family whose members it names."""
-        return self.metadata.get("registry")
-
-    @property
-    def help(self) -> str:
-        """What it does, with its default."""
-        text = str(self.metadata["help"])
-        if self.is_switch:
-            return text if self.switched else f"do not {text}"
-        shown = f"{self.default:g}" if isinstance(self.default, float) else self.default
-        return text if self.default in (None, ()) else f"{text} (default: {shown})"
-
-    @property
-    def metavar(self) -> str:
-        """How its value is shown."""
-        if self.registry is not None:
-            return "SPEC" if self.is_repeatable else "|".join(self.registry)
-        if "choices" in self.metadata:
-            return "|".join(self.metadata["choices"])
-        kinds = {"int": "N", "float": "X"}
-        usual = kinds.get(self.kind.removesuffix(" | None"), self.dest.split("_")[-1].upper())
-        return str(self.metadata.get("metavar", usual))
 
     def value(self, given: object, what: str, sign: str = " = ") -> object:
         """The value that the command line would give for one of a file or a program.
@@ -102,32 +79,30 @@ class Option:
         Raises:
             OptionError: If the value is of another kind, or none that the option may have.
         """
-        if self.is_switch:
-            if isinstance(given, bool):
-                return given == self.switched
-            raise OptionError(f"{what}{sign}{given!r}: write true or false")
-        if self.is_repeatable:
-            entries = given if isinstance(given, list | tuple) else [given]
-            return [self._single(entry, what, sign) for entry in entries]
-        return self._single(given, what, sign)
+        if not self.is_repeatable:
+            return self._single(given, what, sign)
+        entries = given if isinstance(given, list | tuple) else [given]
+        return [self._single(entry, what, sign) for entry in entries]
 
     def _single(self, given: object, what: str, sign: str) -> object:
-        if isinstance(given, bool) or not isinstance(given, str | int | float | Fraction):
-            shown = " ".join(reprlib.repr(given).split())
-            form = f"write a number or a text in quotes, as {self.metavar}"
-            raise OptionError(f"{what}{sign}{shown}: {form}")
+        is_plain = isinstance(given, str | int | float | Fraction)
+        if not is_plain or isinstance(given, bool) != self.is_switch:
+            form = f"a number or a text in quotes, as {self.metavar}"
+            form = "true or false" if self.is_switch else form
+            raise OptionError(f"{what}{sign}{' '.join(reprlib.repr(given).split())}: write {form}")
+        if self.is_switch:
+            return given != self.default
         try:
             result = read_value(self.kind, str(given))
         except ArgumentTypeError as error:
             raise OptionError(f"{what}: {error}") from error
-        choices = self.metadata.get("choices", (result,))
-        if result not in choices:
-            raise OptionError(f"{what}{sign}{given!r}: choose from {', '.join(choices)}")
+        if self.choices and result not in self.choices:
+            raise OptionError(f"{what}{sign}{given!r}: choose from {', '.join(self.choices)}")
         return result
 
 
 RANGE_OPTIONS = tuple(
-    Option(name, name, "range", "str", None, {"help": text, "metavar": form})
+    Option(name, name, "range", "str", text, form)
     for name, text, form in (
         ("frames", "frames from 0, both ends included: A-B, A, A- or A-BxS", "A-B"),
         ("start", "from this time on: seconds or h:mm:ss", "TIME"),
@@ -155,24 +130,19 @@ COMMAND_OPTIONS: dict[str, Callable[[Option], bool]] = {
 
 @cache
 def job_options() -> tuple[Option, ...]:
-    """All options that describe a job; a name that several dataclasses share is one option."""
-    found = {option.dest: option for option in RANGE_OPTIONS}
-    for part, group in _PARTS.items():
-        for option in _options_of(part, group):
-            found.setdefault(option.dest, option)
-    return tuple(found.values())
+    """All options that describe a job."""
+    parts = (_options_of(part, group) for part, group in _PARTS.items())
+    return (*RANGE_OPTIONS, *chain.from_iterable(parts))
 
 
-def add_job_options(
-    parser: argparse.ArgumentParser, wanted: Callable[[Option], bool] = lambda option: True
-) -> None:
-    """Give a parser options of a job, in groups; what is not given is absent from the result."""
+def add_job_options(parser: argparse.ArgumentParser, command: str) -> None:
+    """Give a parser the options of a command, in groups; what is not given is absent later."""
     for key, title in HEADINGS.items():
-        options = [option for option in job_options() if option.group == key and wanted(option)]
-        if options:
+        wanted = [o for o in job_options() if o.group == key and COMMAND_OPTIONS[command](o)]
+        if wanted:
             group = parser.add_argument_group(title)
             sizes = group.add_mutually_exclusive_group() if key == "look" else group
-            for option in options:
+            for option in wanted:
                 _add(sizes if option.dest in EXCLUSIVE else group, option)
 
 
@@ -202,12 +172,12 @@ def with_preset(given: Mapping[str, object], preset: Mapping[str, object]) -> di
 
 
 def _add(group: argparse._ActionsContainer, option: Option) -> None:
-    more: dict[str, Any] = {"action": "store_true" if option.switched else "store_false"}
+    more: dict[str, Any] = {"action": "store_false" if option.default else "store_true"}
     if not option.is_switch:
         more = {
             "action": "append" if option.is_repeatable else "store",
             "type": partial(read_value, option.kind),
-            "choices": option.metadata.get("choices"),
+            "choices": option.choices,
             "metavar": option.metavar,
         }
     more |= {"default": argparse.SUPPRESS, "help": option.help.replace("%", "%%")}
@@ -217,13 +187,23 @@ def _add(group: argparse._ActionsContainer, option: Option) -> None:
 def _options_of(cls: Any, group: str) -> Iterator[Option]:
     """Options of a dataclass and of the dataclasses inside it."""
     for field in fields(cls):
-        made, default, kind = cast(Any, field.default_factory), field.default, kind_of(field)
-        if "registry" in field.metadata and made is not MISSING:
-            default = field.metadata["registry"].name_of(made)
         if "help" in field.metadata:
-            flag = str(field.metadata.get("flag", field.name.replace("_", "-")))
-            flag = f"no-{flag}" if kind == "bool" and default is True else flag
-            own = field.metadata.get("group", group)
-            yield Option(flag, field.name, own, kind, default, field.metadata)
-        elif isinstance(made, type):
-            yield from _options_of(made, group)
+            yield _option(field, field.metadata.get("group", group))
+        elif is_dataclass(field.type):
+            yield from _options_of(field.type, group)
+
+
+def _option(field: Field[Any], group: str) -> Option:
+    """What the metadata of a field say, see `pipeline.options.job`, and what they leave open."""
+    said, kind, default = field.metadata, kind_of(field), field.default
+    if default is MISSING:
+        default = said["registry"].name_of(field.default_factory)
+    flag, text = said.get("flag", field.name.replace("_", "-")), said["help"]
+    if kind != "bool" and default not in (None, ()):
+        text += f" (default: {default:g})" if kind == "float" else f" (default: {default})"
+    elif kind == "bool" and default:
+        flag, text = f"no-{flag}", f"do not {text}"
+    usual = {"int": "N", "float": "X"}.get(kind, field.name.split("_")[-1].upper())
+    shown = "|".join(said.get("registry", said.get("choices", ()))) or usual
+    named = said.get("choices"), said.get("registry")
+    return Option(flag, field.name, group, kind, text, said.get("metavar", shown), default, *named)

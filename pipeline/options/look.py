@@ -32,6 +32,7 @@ class Look:
             "help": "look of the triangles, repeatable from bottom to top "
             "(default: flat, or gradient with --color linear)",
             "registry": STYLES,
+            "metavar": "SPEC",
             "flag": "style",
         },
     )

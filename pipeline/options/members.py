@@ -20,28 +20,38 @@ def parse_member(flag: str, text: str, registry: Mapping[str, type]) -> Any:
         OptionError: If the name, a parameter or a value is not allowed.
         MediaError: If a picture that is a parameter cannot be read.
     """
+    name, _, rest = text.partition(":")
     try:
-        return _member(text, registry)
+        if name not in registry:
+            raise OptionError(_no_member(text, registry))
+        kinds = {field.name: kind_of(field) for field in parameters(registry[name])}
+        return registry[name](**_values(name, rest, kinds))
     except (OptionError, ArgumentTypeError) as error:
         problem = str(error).removeprefix(f"{text}: ")
         raise OptionError(f"{flag} {text}: {problem}") from error
 
 
-def _member(text: str, registry: Mapping[str, type]) -> Any:
-    name, _, rest = text.partition(":")
-    if name not in registry:
-        raise OptionError(_no_member(text, registry))
-    cls: Any = registry[name]
-    kinds = {field.name: kind_of(field) for field in parameters(cls)}
+def _values(name: str, rest: str, kinds: Mapping[str, str]) -> dict[str, Any]:
+    """Values of what follows a name; the first may be a text or a file without its key."""
+    first = next(iter(kinds), None)
+    bare = first if first is not None and kinds[first] in NAMES else None
+    if bare is not None and Path(rest).is_file():
+        return {bare: read_value(kinds[bare], rest)}  # whatever signs its name holds
     values: dict[str, Any] = {}
-    for key, value in _pairs(rest, kinds):
+    for number, item in enumerate(rest.split(",") if rest else []):
+        key, equals, value = item.partition("=")
+        if number == 0 and bare is not None and not equals:
+            key, value = bare, item
+        elif not (key and equals and value):
+            raise OptionError(f"{item!r} is not KEY=VALUE; write name:key=value,...")
+        key = key.strip().replace("-", "_")
         if key not in kinds:
             known = f"it has {', '.join(kinds)}" if kinds else "it has none; write the name alone"
             raise OptionError(f"{name} has no parameter {key!r}; {known}")
         if key in values:
             raise OptionError(f"{key} is given twice; give it once")
-        values[key] = read_value(kinds[key], value, key)
-    return cls(**values)
+        values[key] = read_value(kinds[key], value.strip(), key)
+    return values
 
 
 def _no_member(text: str, registry: Mapping[str, type]) -> str:
@@ -83,20 +93,3 @@ def written(name: str, cls: Any) -> str:
     """A member with its parameters and their defaults, as it would be given."""
     values = (f"{p.name}={'FILE' if p.default is None else p.default}" for p in parameters(cls))
     return ":".join(filter(None, [name, ",".join(values)]))
-
-
-def _pairs(rest: str, kinds: Mapping[str, str]) -> list[tuple[str, str]]:
-    """Keys and values of what follows a name; the first value may be that of a text or a file."""
-    first = next(iter(kinds), None)
-    takes_bare = first is not None and kinds[first].removesuffix(" | None") in NAMES
-    if first is not None and takes_bare and Path(rest).is_file():
-        return [(first, rest)]  # whatever signs its name holds
-    pairs = []
-    for number, item in enumerate(rest.split(",") if rest else []):
-        key, equals, value = item.partition("=")
-        if not equals and number == 0 and first is not None and takes_bare:
-            key, value = first, item
-        elif not (key and equals and value):
-            raise OptionError(f"{item!r} is not KEY=VALUE; write name:key=value,...")
-        pairs.append((key.strip().replace("-", "_"), value.strip()))
-    return pairs

@@ -69,6 +69,7 @@ class SolveOptions:
             "saliency, motion, center, picture:FILE (as --weights), none for nowhere, auto for "
             "faces where there are any (default: auto)",
             "registry": FOCI,
+            "metavar": "SPEC",
         },
     )
     """Where errors count more; empty for `auto`, or for nothing beside `weights`."""

@@ -8,11 +8,9 @@ from dataclasses import Field
 from fractions import Fraction
 from functools import partial
 from pathlib import Path
-from typing import Any, get_origin
+from typing import Any
 
 from stages.look.output_size import FORM, parse_size
-
-_SWITCHES = {"true": True, "yes": True, "1": True, "false": False, "no": False, "0": False}
 
 
 def _finite(text: str) -> float:
@@ -28,6 +26,7 @@ def _grey(name: str) -> Any:
     return read_gray(name)
 
 
+_SWITCHES = {"true": True, "yes": True, "1": True, "false": False, "no": False, "0": False}
 _RULES: dict[str, tuple[Callable[[str], Any], str, str]] = {
     "bool": (lambda text: _SWITCHES[text.lower()], "true or false", "true or false"),
     "int": (int, "a whole number", "one such as 12"),
@@ -41,10 +40,8 @@ NAMES: dict[str, Callable[[str], Any]] = {"str": str, "Path": Path, "ndarray": _
 
 
 def kind_of(field: Field[Any]) -> str:
-    """The type of a field as it is written, such as `int | None`, but for its modules."""
-    kind: Any = field.type
-    is_class = isinstance(kind, type) and get_origin(kind) is None
-    return kind.__name__ if is_class else re.sub(r"\w+\.", "", str(kind))
+    """The type of a field as it is written, such as `int`, but for its modules and None."""
+    return re.sub(r"<class '|'>|\w+\.| \| None$", "", str(field.type))
 
 
 def read_value(kind: str, text: str, parameter: str | None = None) -> Any:
@@ -54,7 +51,6 @@ def read_value(kind: str, text: str, parameter: str | None = None) -> Any:
         ArgumentTypeError: If the text stands for no such value.
         MediaError: If it names a picture that cannot be read.
     """
-    kind = kind.removesuffix(" | None")
     if kind not in _RULES:
         if not text:
             raise ArgumentTypeError("is empty; give a value or leave the option out")
@@ -63,10 +59,9 @@ def read_value(kind: str, text: str, parameter: str | None = None) -> Any:
     try:
         return read(text)
     except (ValueError, KeyError, ZeroDivisionError):
-        told = f"{text!r} is not {noun}; write {form}"
-        raise ArgumentTypeError(
-            f"{parameter}={text}: write {noun}" if parameter else told
-        ) from None
+        told = f"{parameter}={text}: write {noun}"
+        told = told if parameter else f"{text!r} is not {noun}; write {form}"
+        raise ArgumentTypeError(told) from None
 
 
 text_value: Callable[[str], str] = partial(read_value, "str")

@@ -37,4 +37,5 @@ class EncodeOptions:
         },
     )
     overwrite: bool = field(default=False, metadata={"help": "replace an existing output"})
-    threads: int = field(default=0, metadata={"help": "encoder threads, 0 for one per core"})
+    threads: int = 0
+    """Threads of the encoder, those of the whole run; 0 for one per core."""
