@@ -7,7 +7,7 @@ from types import TracebackType
 from pipeline.envelope import Solved
 from pipeline.look.region_masks import own_mask
 from pipeline.look.smooth import Smoother
-from pipeline.look.stage import View, check_stage, open_stage
+from pipeline.look.stage import Posed, check_stage, open_stage
 from pipeline.options.job import Job
 from stages.look.fading import Fading
 from stages.look.framing import Framing
@@ -74,7 +74,7 @@ class Drawing:
             index, shown = snapshot.frame_index, snapshot.pts * snapshot.time_base
             looks = self._stage.looks_at(index, shown - self._start_time, solved.shot)
             masks = {name: self._masks[name].at(index) for name in looks.masks}
-            view = View(snapshot, self._fading, solved.source, masks, solved.shares, self._lay)
+            view = Posed(snapshot, self._fading, solved.source, masks, solved.shares, self._lay)
             pixels = self._stage.draw(looks, view)
             self._encoder.write(pixels, snapshot.pts, snapshot.time_base, snapshot.frame_index)
 

@@ -6,10 +6,10 @@ from fractions import Fraction
 
 import numpy as np
 
-from pipeline.look.wardrobe import View, Wardrobe
+from pipeline.look.wardrobe import Posed, Wardrobe
 from pipeline.options.job import Job
 from pipeline.options.look import Look
-from pipeline.timeline.show import Moment, Scene, Show
+from pipeline.timeline.show import Instant, Setting, Show
 from pipeline.timeline.staging import show_of
 from stages.look.framing import Framing, framed
 from stages.look.transitions import faded, thinned, wiped, with_alpha
@@ -17,7 +17,7 @@ from stages.media import MediaInfo
 from warp_kernels.color_model import ColorModel
 from warp_kernels.device.device import Device
 
-__all__ = ["Looks", "Stage", "View", "check_stage", "open_stage"]
+__all__ = ["Looks", "Posed", "Stage", "check_stage", "open_stage"]
 
 BLACK = (0.0, 0.0, 0.0)
 """Behind a picture that has no background of its own [code values]."""
@@ -27,11 +27,11 @@ BLACK = (0.0, 0.0, 0.0)
 class Looks:
     """What is drawn at a frame."""
 
-    moment: Moment
+    moment: Instant
     """The section, or two."""
 
     @property
-    def scenes(self) -> Sequence[Scene]:
+    def scenes(self) -> Sequence[Setting]:
         """The scenes that are drawn."""
         before = self.moment.before
         return (self.moment.scene,) if before is None else (before, self.moment.scene)
@@ -65,7 +65,7 @@ class Stage:
         frames: tuple[int, int],
     ) -> None:
         self._wardrobe, self._framing, self._model, self._show = wardrobe, framing, model, show
-        self._steady = Moment(Scene(0, look))
+        self._steady = Instant(Setting(0, look))
         self._is_alpha = False
         scenes = [self._steady.scene] if show is None else show.foreseen(*frames)
         for scene in scenes:
@@ -89,7 +89,7 @@ class Stage:
             return Looks(self._steady)
         return Looks(self._show.at(index, shown, shot))
 
-    def draw(self, looks: Looks, view: View) -> np.ndarray:
+    def draw(self, looks: Looks, view: Posed) -> np.ndarray:
         """Draw a frame.
 
         Args:
@@ -108,7 +108,7 @@ class Stage:
             return wiped(before, pixels, moment.share, moment.transition.direction)
         return faded(before, pixels, moment.share)
 
-    def _drawn(self, scene: Scene, view: View) -> np.ndarray:
+    def _drawn(self, scene: Setting, view: Posed) -> np.ndarray:
         """One scene on its canvas."""
         backdrop = scene.look.backdrop(self._model)
         pixels = self._wardrobe.draw(scene.look, view)

@@ -17,7 +17,7 @@ from warp_kernels.scene.stroke_lay import Lay
 
 
 @dataclass(frozen=True, eq=False)
-class View:
+class Posed:
     """A frame, and all that a renderer wants of it."""
 
     snapshot: Snapshot
@@ -82,7 +82,7 @@ class Wardrobe:
         self._dressed[id(found)] = look
         return found
 
-    def draw(self, look: Look, view: View) -> np.ndarray:
+    def draw(self, look: Look, view: Posed) -> np.ndarray:
         """Draw a frame.
 
         Args:

@@ -29,7 +29,7 @@ CHUNK = 256
 
 
 @dataclass(frozen=True)
-class Scene:
+class Setting:
     """How a section looks at a frame."""
 
     section: int
@@ -41,12 +41,12 @@ class Scene:
 
 
 @dataclass(frozen=True)
-class Moment:
+class Instant:
     """What is drawn at a frame."""
 
-    scene: Scene
+    scene: Setting
     """The section that it belongs to."""
-    before: Scene | None = None
+    before: Setting | None = None
     """The section that is on its way out, if one is."""
     transition: Transition | None = None
     """How."""
@@ -55,7 +55,7 @@ class Moment:
 
 
 @dataclass(frozen=True, eq=False)
-class Line:
+class Driven:
     """One curve in one section: its values."""
 
     target: Target
@@ -140,9 +140,9 @@ class Placed:
     """Number of its first frame."""
     ends: int
     """Number of the first frame that the transition into it does not reach."""
-    lines: tuple[Line, ...]
+    lines: tuple[Driven, ...]
     """What changes in it."""
-    made: dict[tuple[Any, ...], Scene] = field(default_factory=dict)
+    made: dict[tuple[Any, ...], Setting] = field(default_factory=dict)
     """The scene of the last values: most frames differ from the one before in few."""
 
 
@@ -169,7 +169,7 @@ class Show:
             end = begin + 1.0 if end is None else end
             self._place(number, section, look, begin, end)
 
-    def at(self, index: int, shown: Fraction | None = None, shot: int = 0) -> Moment:
+    def at(self, index: int, shown: Fraction | None = None, shot: int = 0) -> Instant:
         """What is drawn at a frame; it depends on nothing but the frame.
 
         Args:
@@ -186,12 +186,12 @@ class Show:
         placed = self.sections[number]
         scene = self._scene(number, index, time, shot)
         if frame >= placed.ends or number == 0:
-            return Moment(scene)
+            return Instant(scene)
         share = (frame - placed.first + 1) / (placed.ends - placed.first + 1)
         before = self._scene(number - 1, index, time, shot)
-        return Moment(scene, before, placed.section.transition, share)
+        return Instant(scene, before, placed.section.transition, share)
 
-    def _scene(self, number: int, index: int, time: float, shot: int) -> Scene:
+    def _scene(self, number: int, index: int, time: float, shot: int) -> Setting:
         placed = self.sections[number]
         seen = [line for line in placed.lines if not line.target.is_mesh]
         values = tuple(line.at(index, time, shot) for line in seen)
@@ -200,14 +200,14 @@ class Show:
             placed.made[values] = _scene_of(number, placed, seen, values)
         return placed.made[values]
 
-    def foreseen(self, first: int, last: int) -> list[Scene]:
+    def foreseen(self, first: int, last: int) -> list[Setting]:
         """Scenes of every kind that some frames will show, as far as that can be told.
 
         Args:
             first: Number of the first frame that is drawn.
             last: Number of the last one.
         """
-        found: list[Scene] = []
+        found: list[Setting] = []
         for number, placed in enumerate(self.sections):
             later = self.sections[number + 1] if number + 1 < len(self.sections) else None
             begin = max(first, placed.first) if number else first
@@ -341,7 +341,7 @@ def _lines(
     clock: Clock,
     start: float,
     span: tuple[float, float],
-) -> Iterator[Line]:
+) -> Iterator[Driven]:
     """The curves that are seen in a look."""
     for curve in curves:
         kind = kind_of_target(curve.target, look)
@@ -356,10 +356,10 @@ def _lines(
             )
         else:
             course = curve.course
-        yield Line(curve.target, kind, course, clock, span)
+        yield Driven(curve.target, kind, course, clock, span)
 
 
-def _scene_of(number: int, placed: Placed, lines: list[Line], values: tuple[Any, ...]) -> Scene:
+def _scene_of(number: int, placed: Placed, lines: list[Driven], values: tuple[Any, ...]) -> Setting:
     """The look of a section with some values in it."""
     look, opacity = placed.look, 1.0
     changes: dict[tuple[str, int | None], dict[str, Any]] = {}
@@ -382,4 +382,4 @@ def _scene_of(number: int, placed: Placed, lines: list[Line], values: tuple[Any,
         changes.setdefault(key, {})[target.parameter] = value
     changed = {key: replace(members[key], **given) for key, given in changes.items()}
     look = with_members(look, changed)
-    return Scene(number, replace(look, **own) if own else look, opacity)
+    return Setting(number, replace(look, **own) if own else look, opacity)
