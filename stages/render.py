@@ -1,6 +1,7 @@
 """Draw a snapshot in any stack of styles at any size."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -49,6 +50,20 @@ class Renderer:
         textures = [style.texture(read_gray) for style in (*styles, *masked)]
         self._canvas = Canvas(device, picture, output, styles, masked, textures, followed)
 
+    @property
+    def is_transparent(self) -> bool:
+        """Whether what is drawn has alpha."""
+        return self._canvas.channels == 4
+
+    def restyle(self, styles: tuple[Style, ...], masked: tuple[Style, ...] = ()) -> None:
+        """Draw with other parameters from now on.
+
+        Args:
+            styles: As those that it was made with but for numbers, see `stack_kind`.
+            masked: The same.
+        """
+        self._canvas.restyle(styles, masked)
+
     def render(
         self,
         snapshot: Snapshot,
@@ -57,6 +72,7 @@ class Renderer:
         masks: Sequence[np.ndarray] = (),
         shares: np.ndarray | None = None,
         lay: Lay | None = None,
+        columns: Sequence[int] | None = None,
     ) -> np.ndarray:
         """Draw a snapshot.
 
@@ -71,6 +87,7 @@ class Renderer:
                 those that it was told.
             lay: How strokes lie; None if they follow the triangles' own base edges; with `fading`
                 that which it was told.
+            columns: Which of the followed regions it draws; None for all.
 
         Returns:
             Code values, [rows, columns, 3] uint8, or [rows, columns, 4] with straight alpha if no
@@ -80,6 +97,8 @@ class Renderer:
         paint, layers = paint_of(snapshot, shares, lay), None
         if fading is not None:
             paint, layers = fading.layers()
+        if columns is not None and paint.shares is not None:
+            paint = replace(paint, shares=np.ascontiguousarray(paint.shares[:, list(columns)]))
         return self._canvas.draw(
             vertices=mesh.vertices,
             triangles=mesh.triangles,

@@ -51,7 +51,9 @@ def _animate(arguments: argparse.Namespace) -> "Animated":
 
 
 def _solve(arguments: argparse.Namespace) -> "Animated":
-    job = _solve_job(arguments)
+    from pipeline.timeline.mesh_course import with_course
+
+    job = with_course(_solve_job(arguments))
     with progress_for(arguments) as progress:
         from pipeline.loop.animate import solve
 
@@ -111,10 +113,12 @@ def _solve_job(arguments: argparse.Namespace) -> "Job":
 def _wanted(arguments: argparse.Namespace) -> "tuple[FrameRange, Look, Output, Run]":
     """What a track is drawn with."""
     from pipeline.options.build import build_render
+    from pipeline.timeline.staging import staged
     from pipeline.track.kind import drawn_ending
 
     path = Path(arguments.track)
-    return build_render(_given(arguments), path, drawn_ending(path))
+    wanted, look, output, run = build_render(_given(arguments), path, drawn_ending(path))
+    return wanted, staged(look), output, run
 
 
 def _job(arguments: argparse.Namespace, **fixed: object) -> "Job":
@@ -125,8 +129,9 @@ def _job(arguments: argparse.Namespace, **fixed: object) -> "Job":
         fixed: What the command decides itself.
     """
     from pipeline.options.build import build_job
+    from pipeline.timeline.staging import with_timeline
 
-    return build_job({**_given(arguments), **fixed})
+    return with_timeline(build_job({**_given(arguments), **fixed}))
 
 
 def _given(arguments: argparse.Namespace) -> dict[str, object]:

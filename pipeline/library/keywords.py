@@ -77,6 +77,7 @@ class SolveKeywords(AnimatorKeywords, SourceKeywords, total=False):
     """How a clip becomes triangles."""
 
     preset: Name | None
+    timeline: Name | None
     jobs: int
     overwrite: bool
     resume: bool
@@ -87,6 +88,7 @@ class LookKeywords(TypedDict, total=False):
 
     styles: str | Sequence[str]
     regions: str | Sequence[str]
+    timeline: Name | None
     size: str | tuple[int, int] | None
     scale: float | None
     fit: str

@@ -73,7 +73,9 @@ def solve(
     job = _job("solve", source, options, **fixed)
     with progress_for(progress) as told, explained_loss(job.run.jobs):
         from pipeline.loop.animate import solve as run
+        from pipeline.timeline.mesh_course import with_course
 
+        job = with_course(job)
         return _result(run(job.solve, job.output, job.run, told), job.output.track, told)
 
 
@@ -105,12 +107,13 @@ def render(
     from pipeline.look.render_job import render_job
     from pipeline.loop.render import render as draw
     from pipeline.options.build import build_render
+    from pipeline.timeline.staging import staged
     from pipeline.track import TrackReader
     from pipeline.track.kind import drawn_ending
 
-    wanted = build_render({**given, "output": target}, path, drawn_ending(path))
+    frames, look, written, run = build_render({**given, "output": target}, path, drawn_ending(path))
     with TrackReader(path) as reader, progress_for(progress) as told:
-        made = render_job(reader, *wanted, moved)
+        made = render_job(reader, frames, staged(look), written, run, moved)
         drawn = draw(made.job, reader, made.info, told)
         return _result(drawn, made.job.output.path, told, made.notes, made.warnings)
 
@@ -160,8 +163,9 @@ def _job(function: str, source: Name, options: Mapping[str, Any], **fixed: objec
     values = given_values(function, options)
     check_processes(cast(int, values.get("jobs", 1)))
     from pipeline.options.build import build_job
+    from pipeline.timeline.staging import with_timeline
 
-    return build_job({**values, **fixed})
+    return with_timeline(build_job({**values, **fixed}))
 
 
 def _result(

@@ -7,13 +7,13 @@ from types import TracebackType
 from pipeline.envelope import Solved
 from pipeline.look.region_masks import own_mask
 from pipeline.look.smooth import Smoother
+from pipeline.look.stage import Posed, check_stage, open_stage
 from pipeline.options.job import Job
 from stages.look.fading import Fading
-from stages.look.framing import Framing, framed
+from stages.look.framing import Framing
 from stages.look.strokes import Strokes
-from stages.masks.regions import open_masks
+from stages.masks.regions import Mask, open_masks
 from stages.media import MediaInfo, check_output, open_encoder
-from stages.render import Renderer
 from warp_kernels.device.device import Device
 from warp_kernels.scene.stroke_lay import Lay
 
@@ -37,13 +37,10 @@ class Drawing:
         assert output.path is not None
         self._framing = look.framing_for(picture, info.sample_aspect)
         self._hidden = look.hidden
-        self._backdrop = look.backdrop(options.model)
-        masked = tuple(region.style for region in look.regions)
-        followed = tuple(i for i, region in enumerate(look.regions) if region.frames)
-        styles = look.shown_styles(options.model)
-        drawn = self._framing.picture
-        self._renderer = Renderer(device, picture, drawn, styles, masked, followed)
-        self._masks = open_masks(look.unfollowed, picture)
+        self._start_time = info.start_time
+        self._stage = open_stage(device, job, info, self._framing)
+        names = dict.fromkeys(region.mask for region in look.unfollowed)
+        self._masks = {name: Mask(name, picture) for name in names}
         self._encoder = open_encoder(
             output.path,
             _shown(info, self._framing),
@@ -62,7 +59,8 @@ class Drawing:
     @property
     def notes(self) -> list[str]:
         """Choices that were made, one sentence each; complete after the block."""
-        return [*self._hidden, *_fitted(self._framing), *self._encoder.notes]
+        fitted = _fitted(self._framing)
+        return [*self._hidden, *self._stage.notes, *fitted, *self._encoder.notes]
 
     def draw(self, solved: Solved) -> None:
         """Draw and encode a frame, or an earlier one that has been waiting for it."""
@@ -73,11 +71,11 @@ class Drawing:
         self._follow(solved)
         if solved.is_shown:
             snapshot = solved.snapshot
-            masks = [mask.at(snapshot.frame_index) for mask in self._masks]
-            pixels = self._renderer.render(
-                snapshot, self._fading, solved.source, masks, solved.shares, self._lay
-            )
-            pixels = framed(pixels, self._framing, self._backdrop)
+            index, shown = snapshot.frame_index, snapshot.pts * snapshot.time_base
+            looks = self._stage.looks_at(index, shown - self._start_time, solved.shot)
+            masks = {name: self._masks[name].at(index) for name in looks.masks}
+            view = Posed(snapshot, self._fading, solved.source, masks, solved.shares, self._lay)
+            pixels = self._stage.draw(looks, view)
             self._encoder.write(pixels, snapshot.pts, snapshot.time_base, snapshot.frame_index)
 
     def _follow(self, solved: Solved) -> None:
@@ -121,7 +119,7 @@ class Drawing:
                 self._draw(solved)
 
     def _close_masks(self) -> None:
-        for mask in self._masks:
+        for mask in self._masks.values():
             mask.close()
 
 
@@ -138,6 +136,7 @@ def check_drawing(job: Job, info: MediaInfo) -> None:
         OutputError: If the output cannot be written.
     """
     picture = (info.width, info.height)
+    check_stage(job, info)
     for mask in open_masks(job.look.unfollowed, picture):
         mask.close()
     for region in job.look.followed:

@@ -25,6 +25,7 @@ from pipeline.options.output import Output
 from pipeline.options.run import Run
 from pipeline.options.solve_options import SolveOptions
 from pipeline.progress import Progress
+from pipeline.timeline.mesh_course import with_course
 from pipeline.track import TrackReader, join, refuse_track
 from pipeline.track.resume import check_track_place
 from pipeline.track.schema import ENDING
@@ -52,6 +53,7 @@ def animate(job: Job, progress: Progress, runner: RangeRunner | None = None) -> 
         TrackError: If the track to go on with cannot be.
     """
     runner = runner or runner_of(job.run)
+    job = with_course(job)
     if runner.places > 1 or job.look.followed:
         return _solved_then_drawn(job, progress, runner)
     return convert(job, job.fitted, progress)

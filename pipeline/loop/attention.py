@@ -5,7 +5,7 @@ begin with a shot, a solution that goes on and `--jobs` give the bits of the who
 """
 
 from collections import deque
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from typing import Protocol
 
@@ -54,17 +54,24 @@ class Attention:
         info: The source.
         step: Distance of the frames that are given, in numbers.
         triangles: How many there will be.
+        factor: By the number of a frame the factor of all that is added there.
 
     Raises:
         OptionError: If the network that finds faces is missing.
     """
 
     def __init__(
-        self, members: Sequence[Focus], info: MediaInfo, step: int, triangles: int
+        self,
+        members: Sequence[Focus],
+        info: MediaInfo,
+        step: int,
+        triangles: int,
+        factor: Callable[[int], float] = lambda index: 1.0,
     ) -> None:
         self._members = [m for m in members if isinstance(m, Faces | Glance)]
         self._info = info
         self._step = step
+        self._factor = factor
         faces = any(isinstance(member, Faces) for member in members)
         self._search = FaceSearch() if faces else None
         self.notes: list[str] = []
@@ -123,6 +130,7 @@ class Attention:
             total = added if total is None else total + added
         if total is None:
             return frame
+        total = np.float32(self._factor(frame.index)) * total
         weights = np.minimum(np.rint(UNIT + UNIT * total), 255.0).astype(np.uint8)
         return frame if (weights == UNIT).all() else replace(frame, weights=weights)
 

@@ -5,6 +5,7 @@ A frame is drawn while the next one is solved and later ones are prepared, each 
 
 from collections.abc import Generator, Iterable, Iterator, Sequence
 from contextlib import closing, nullcontext
+from dataclasses import replace
 from time import perf_counter
 
 import numpy as np
@@ -27,6 +28,7 @@ from stages.media import Decoder
 from stages.media.expected_frames import expected_frames
 from stages.motion.advect import advect
 from stages.triangulate import Triangulator
+from stages.triangulate_options import TriangulateOptions
 from warp_kernels.color_model import ColorModel
 from warp_kernels.device.device import Device
 
@@ -58,7 +60,8 @@ def convert(job: Job, fitted: ColorModel, progress: Progress) -> Animated:
             check_drawing(job, info)
         device = Device(job.run.device, job.run.threads, progress.kernels)
         count = options.triangulate.refine.triangles
-        attention = Attention(options.foci, info, options.frame_range.step, count)
+        step, factor = options.frame_range.step, options.course.focus
+        attention = Attention(options.foci, info, step, count, factor)
         size = (info.width, info.height)
         maps = [WeightMap(str(m.file), size, options.frame_range, m.strength) for m in options.maps]
         # in this order all kernels of the job are compiled together
@@ -135,6 +138,7 @@ def solved_frames(
     snapshot = None if past is None else past.snapshot
     for ready in found:
         frame, mesh_from = ready.frame, ready.mesh_from
+        triangulator.options = _options_at(frame.index, options)
         if snapshot is None or mesh_from is MeshFrom.LAYOUT:
             rng = np.random.default_rng([options.seed, frame.index])
             snapshot = triangulator.first(frame, options.layout, rng)
@@ -146,6 +150,12 @@ def solved_frames(
         else:
             snapshot = triangulator.next(frame, advect(snapshot.mesh, mesh_from), snapshot)
         yield ready.solved(snapshot, keeps_picture=keeps)
+
+
+def _options_at(index: int, options: SolveOptions) -> TriangulateOptions:
+    """How the picture of a frame becomes triangles, where that changes."""
+    now = options.triangulate
+    return replace(now, refine=options.course.refine(index, now.refine))
 
 
 def _recall(job: Job, tally: Tally, writer: Behind[Solved] | None) -> None:

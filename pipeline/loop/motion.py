@@ -112,7 +112,13 @@ def _mesh_from(
     if options.independent:
         return MeshFrom.LAYOUT
     passage = Passage.between(options.flow, earlier, later)
-    is_same = passage.is_still and not options.maps and _weigh_alike(before.weights, frame.weights)
+    is_steady = options.course.is_steady(before.index, frame.index)
+    is_same = (
+        passage.is_still
+        and is_steady
+        and not options.maps
+        and _weigh_alike(before.weights, frame.weights)
+    )
     return MeshFrom.SAME_PICTURE if is_same else passage
 
 

@@ -16,9 +16,9 @@ from pipeline.options.values import kind_of, read_value
 from warp_kernels.errors import OptionError
 from warp_kernels.registry import Registry
 
-GROUPS = ("range", "triangles", "motion", "look", "output", "run", "processes")
+GROUPS = ("range", "triangles", "motion", "look", "time", "output", "run", "processes")
 """Groups of the help, in order."""
-_TITLES = {"range": "which frames", "output": "output file"}
+_TITLES = {"range": "which frames", "time": "change over time", "output": "output file"}
 """Headings of those whose own name would not do."""
 
 _PARTS = {Run: "run", SolveOptions: "triangles", Look: "look", Output: "output"}
@@ -101,13 +101,13 @@ RANGE_OPTIONS = tuple(
 )
 """Options that together make a `FrameRange`."""
 
-_SOLVED = ("track", "resume", "fps", "page", "stream", "seed")
-"""Options that mean nothing once there is a track."""
+_SOLVING = {"triangles", "motion", "processes", "track", "resume", "fps", "page", "stream", "seed"}
+"""Groups and options that mean nothing once there is a track."""
 
 COMMAND_OPTIONS: dict[str, Callable[[Option], bool]] = {
     "animate": lambda o: True,
     "solve": lambda o: o.group not in ("look", "output") or o.dest in ("overwrite", "resume"),
-    "render": lambda o: o.group in ("range", "look", "output", "run") and o.dest not in _SOLVED,
+    "render": lambda o: not _SOLVING & {o.group, o.dest},
     "preview": lambda o: o.dest not in ("track", "resume", "jobs"),
     "plan": lambda o: o.group == "range" or o.dest == "cuts",
     "measure": lambda o: o in RANGE_OPTIONS,

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, field
 from fractions import Fraction
+from typing import Any
 
 from stages.look.framing import Framing, framing_of
 from stages.masks.region import Region
@@ -94,6 +95,21 @@ class Look:
     )
     """Standard deviation of the smoothing over time [frames]."""
 
+    timeline: str | None = field(
+        default=None,
+        metadata={
+            "help": "what changes over time: a file of sections and curves, or a shipped one: "
+            "pulse, build-up, ink-to-colour, strobe-safe",
+            "metavar": "FILE.toml|NAME",
+            "group": "time",
+        },
+    )
+    """A file with what changes over time, or the name of a shipped one."""
+    sections: tuple["Look", ...] = ()
+    """Looks that the file gives to parts of the film, in place of this one."""
+    score: Any = None
+    """What was read of the file, a `pipeline.timeline.timeline.Timeline`."""
+
     def __post_init__(self) -> None:
         if self.output_size is not None and self.scale is not None:
             raise OptionError("--size and --scale exclude each other; give one of them")
@@ -130,33 +146,41 @@ class Look:
         Args:
             model: The colour model that is optimised.
         """
-        shown = (*self.shown_styles(model), *self._in_regions)
+        shown = (*self.shown_styles(model), *self._everywhere)
         drawn = LINEAR if any(style.degree > 0 for style in shown) else CONSTANT
         return max(model, drawn, key=lambda model: model.degree)
 
     @property
     def lays_strokes(self) -> bool:
         """Whether a look has strokes that go on from frame to frame: all of a shot is needed."""
-        return any(style.lays_strokes for style in (*self.styles, *self._in_regions))
+        return any(style.lays_strokes for style in self._everywhere)
 
     @property
     def needs_source(self) -> bool:
         """Whether a look shows the source picture."""
-        return any(style.needs_source for style in (*self.styles, *self._in_regions))
+        return any(style.needs_source for style in self._everywhere)
 
     @property
     def followed(self) -> tuple[Region, ...]:
-        """Regions that stay with their triangles."""
-        return tuple(region for region in self.regions if region.frames)
+        """Regions that stay with their triangles, those of sections among them."""
+        return tuple(region for region in self.all_regions if region.frames)
 
     @property
     def unfollowed(self) -> tuple[Region, ...]:
-        """Regions whose masks say for every frame where they are."""
-        return tuple(region for region in self.regions if not region.frames)
+        """Regions whose masks say for every frame where they are, those of sections among them."""
+        return tuple(region for region in self.all_regions if not region.frames)
 
     @property
-    def _in_regions(self) -> tuple[Style, ...]:
-        return tuple(region.style for region in self.regions)
+    def all_regions(self) -> tuple[Region, ...]:
+        """The regions of this look, then those that sections add."""
+        found = [*self.regions, *(r for one in self.sections for r in one.regions)]
+        return tuple(dict.fromkeys(found))
+
+    @property
+    def _everywhere(self) -> tuple[Style, ...]:
+        """All styles that are drawn at any time."""
+        own = (*self.styles, *(region.style for region in self.regions))
+        return (*own, *(style for one in self.sections for style in one._everywhere))
 
     def backdrop(self, model: ColorModel) -> tuple[float, float, float] | None:
         """What is seen where there is no picture [code values]; None where nothing is.

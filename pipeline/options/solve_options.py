@@ -6,6 +6,7 @@ A track stores these options, and `--resume` and `join` compare them.
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from pipeline.options.course import Course
 from stages.flows import FLOWS, Flow
 from stages.flows.dis import Dis
 from stages.focus import FOCI, Focus, resolved
@@ -74,6 +75,8 @@ class SolveOptions:
     """Where errors count more; empty for `auto`, or for nothing beside `weights`."""
     triangulate: TriangulateOptions = field(default_factory=TriangulateOptions)
     """How one picture becomes triangles."""
+    course: Course = field(default_factory=Course)
+    """What of this changes in the course of the film."""
     cuts: str = field(
         default="auto",
         metadata={

@@ -10,6 +10,14 @@ FREE = frozenset({"source", "frame_range"})
 """Fields that may differ: the source is compared by its content, the range by what it joins."""
 
 
+NAMES = {
+    "of_triangles": "triangles of the --timeline",
+    "of_error": "error of the --timeline",
+    "of_focus": "focus.strength of the --timeline",
+}
+"""What fields are called that are no options."""
+
+
 def differing_flags(mine: Mapping[str, Any], theirs: Mapping[str, Any]) -> list[str]:
     """The options that differ, such as `--triangles 90 instead of 120`.
 
@@ -33,7 +41,7 @@ def _differing(
         if option is None and isinstance(one, Mapping) and isinstance(other, Mapping):
             yield from _differing(one, other, options)
         else:
-            flag = f"--{option.flag}" if option is not None else name
+            flag = f"--{option.flag}" if option is not None else NAMES.get(name, name)
             yield f"{flag} {_shown(other)} instead of {_shown(one)}"
 
 

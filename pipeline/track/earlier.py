@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
+from pipeline.options.course import Course
 from pipeline.track.plain_values import CLASS, to_plain
 from stages.flows import FLOWS
 from stages.focus import FOCI
@@ -10,7 +11,11 @@ from stages.layouts import LAYOUTS
 from stages.media.reading.read_options import ReadOptions
 from warp_kernels.registry import Registry
 
-UNKNOWN_THEN = {"focus": [{CLASS: "none"}], "read": to_plain(ReadOptions())}
+UNKNOWN_THEN = {
+    "focus": [{CLASS: "none"}],
+    "read": to_plain(ReadOptions()),
+    "course": to_plain(Course()),
+}
 """What tracks were made with that did not know these options."""
 WHOLE_JOB = "Job"
 """The class of options that held all of a run, looks and names of files among them."""

@@ -13,7 +13,7 @@ from warp_kernels.drawing.gbuffer import fill_triangles, record_gbuffer
 from warp_kernels.drawing.layers import Layers, LayerTables
 from warp_kernels.drawing.paint import Paint, shapes_of
 from warp_kernels.drawing.sample_points import LIST, parts_of_a_pixel
-from warp_kernels.drawing.shade import record_shade, shade_kernel
+from warp_kernels.drawing.shade import channels_of, record_shade, shade_kernel
 from warp_kernels.drawing.triangle_setup import prepare_kernel, record_prepare
 from warp_kernels.limits import MAX_SIDE
 from warp_kernels.scene.places import hashes_of, to_places
@@ -72,8 +72,9 @@ class Canvas:
         self._triangle_of = device.empty((self._band * self.samples + 1, columns), int)
         device.clear(self._triangle_of)  # where a mesh has holes, what stood there is looked up
         self._points = device.empty((self._band, LIST), int)
-        is_opaque = any(coat.is_opaque for coat in self._coats)
-        self._pixels = device.empty((height, width, 3 if is_opaque else 4), wp.uint8)
+        self.channels = channels_of(self._coats)
+        """Numbers of a pixel: 3, or 4 with alpha."""
+        self._pixels = device.empty((height, width, self.channels), wp.uint8)
         self._curved = device.empty(1, int)
         self._count = device.empty(1, int)
         self._steady = self._steady_scene(needs_source=any(s.needs_source for s in styles))
@@ -107,9 +108,22 @@ class Canvas:
 
     def _parameters_of(self, styles: tuple[Style, ...], textures: list[Texels | None]) -> wp.array:
         """What the styles were asked for; their textures become a part of the scene."""
-        texels, levels, ranges = pack(textures)
+        texels, levels, self._levels_of = pack(textures)
         self._steady["texels"] = self._filled(texels, wp.uint8)
         self._steady["levels"] = self._filled(levels, int)
+        return self._filled(self._packed(styles), StyleParameters)
+
+    def restyle(self, styles: tuple[Style, ...], masked: tuple[Style, ...]) -> None:
+        """Draw with other parameters from now on.
+
+        Args:
+            styles: As for the canvas, and of the same kind, see `stack_kind`.
+            masked: The same.
+        """
+        self.device.write(self._parameters, self._packed((*styles, *masked)))
+
+    def _packed(self, styles: tuple[Style, ...]) -> np.ndarray:
+        """The parameters of styles as the device has them."""
         # rows of named numbers, as Warp says
         packed: Any = np.zeros(
             max(1, len(styles)),
@@ -119,11 +133,11 @@ class Canvas:
         for kind in ("is_masked", "is_followed"):
             own = [row for row, coat in enumerate(self._coats) if getattr(coat, kind)]
             packed["mask"][own] = np.arange(len(own))
-        for row, style, (first, count) in zip(packed, styles, ranges, strict=False):
+        for row, style, (first, count) in zip(packed, styles, self._levels_of, strict=False):
             numbers = style.numbers()
             row["numbers"].reshape(-1)[: len(numbers)] = numbers
             row["opacity"], row["first_level"], row["level_count"] = style.opacity, first, count
-        return self._filled(packed, StyleParameters)
+        return np.asarray(packed)
 
     def draw(
         self,

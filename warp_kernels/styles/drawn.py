@@ -96,6 +96,7 @@ class Drawn(Style):
 
     prepare = Imported("warp_kernels.styles.tones.strokes:prepare_strokes")
     lays_strokes: ClassVar[bool] = True
+    built_from: ClassVar[tuple[str, ...]] = ("weight", "grain", "seed")
     drawing: ClassVar[Any]
     """The strokes."""
 

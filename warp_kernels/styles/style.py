@@ -63,6 +63,10 @@ class Style:
     lays_strokes: ClassVar[bool] = False
     """Whether the shader looks at `Scene.lay`: where strokes lie that go on from frame to frame."""
 
+    built_from: ClassVar[tuple[str, ...]] = ()
+    """Parameters on which its texture depends: what draws it is made anew for other values, where
+    all others are numbers that a frame is drawn with."""
+
     portraits: ClassVar[tuple[str, ...]] = ()
     """Stacks that show it well, such as `paper + circles`, the lowest style first; its name alone
     if there are none."""

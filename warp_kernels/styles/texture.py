@@ -29,6 +29,7 @@ class Texture(Style):
 
     shader = Imported("warp_kernels.styles.shaders.texture:textured_color")
     prepare = Imported("warp_kernels.styles.shaders.texture:prepare_texture")
+    built_from: ClassVar[tuple[str, ...]] = ("file",)
     portraits: ClassVar[tuple[str, ...]] = ("texture:cushion", "texture:triangle")
 
     @property

@@ -1,0 +1,162 @@
+"""What is drawn at a frame: the look of its moment, or two on the way from one to the other."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+
+from pipeline.look.wardrobe import Posed, Wardrobe
+from pipeline.options.job import Job
+from pipeline.options.look import Look
+from pipeline.timeline.show import Instant, Setting, Show
+from pipeline.timeline.staging import show_of
+from stages.look.framing import Framing, framed
+from stages.look.transitions import faded, thinned, wiped, with_alpha
+from stages.media import MediaInfo
+from warp_kernels.color_model import ColorModel
+from warp_kernels.device.device import Device
+
+__all__ = ["Looks", "Posed", "Stage", "check_stage", "open_stage"]
+
+BLACK = (0.0, 0.0, 0.0)
+"""Behind a picture that has no background of its own [code values]."""
+
+
+@dataclass(frozen=True)
+class Looks:
+    """What is drawn at a frame."""
+
+    moment: Instant
+    """The section, or two."""
+
+    @property
+    def scenes(self) -> Sequence[Setting]:
+        """The scenes that are drawn."""
+        before = self.moment.before
+        return (self.moment.scene,) if before is None else (before, self.moment.scene)
+
+    @property
+    def masks(self) -> list[str]:
+        """Names of the masks that are looked at."""
+        regions = [region for scene in self.scenes for region in scene.look.regions]
+        return list(dict.fromkeys(region.mask for region in regions if not region.frames))
+
+
+class Stage:
+    """Draws frames as the moment wants it.
+
+    Args:
+        wardrobe: Draws frames in one look.
+        framing: Where the picture lies on the output.
+        look: The look of the film.
+        model: The colour model that is optimised.
+        show: What is drawn when; None if nothing changes.
+        frames: Numbers of the first and the last frame that are drawn, as far as is known.
+    """
+
+    def __init__(
+        self,
+        wardrobe: Wardrobe,
+        framing: Framing,
+        look: Look,
+        model: ColorModel,
+        show: Show | None,
+        frames: tuple[int, int],
+    ) -> None:
+        self._wardrobe, self._framing, self._model, self._show = wardrobe, framing, model, show
+        self._steady = Instant(Setting(0, look))
+        self._is_alpha = False
+        scenes = [self._steady.scene] if show is None else show.foreseen(*frames)
+        for scene in scenes:
+            transparent = wardrobe.prepare(scene.look).is_transparent
+            self._is_alpha |= transparent and scene.look.backdrop(model) is None
+
+    @property
+    def notes(self) -> list[str]:
+        """What is told of the timeline, one sentence each."""
+        return [] if self._show is None else self._show.notes
+
+    def looks_at(self, index: int, shown: Fraction, shot: int) -> Looks:
+        """What is drawn at a frame.
+
+        Args:
+            index: Its number in the source.
+            shown: When it is shown [s from the first frame].
+            shot: Number of the frame with which its shot begins.
+        """
+        if self._show is None:
+            return Looks(self._steady)
+        return Looks(self._show.at(index, shown, shot))
+
+    def draw(self, looks: Looks, view: Posed) -> np.ndarray:
+        """Draw a frame.
+
+        Args:
+            looks: How.
+            view: The frame.
+
+        Returns:
+            Code values, [rows, columns, 3 or 4] uint8, as many for all frames.
+        """
+        moment = looks.moment
+        pixels = self._drawn(moment.scene, view)
+        if moment.before is None or moment.transition is None:
+            return pixels
+        before = self._drawn(moment.before, view)
+        if moment.transition.kind == "wipe":
+            return wiped(before, pixels, moment.share, moment.transition.direction)
+        return faded(before, pixels, moment.share)
+
+    def _drawn(self, scene: Setting, view: Posed) -> np.ndarray:
+        """One scene on its canvas."""
+        backdrop = scene.look.backdrop(self._model)
+        pixels = self._wardrobe.draw(scene.look, view)
+        if self._is_alpha:
+            pixels = with_alpha(pixels)
+        elif pixels.shape[2] == 4 and backdrop is None:
+            backdrop = BLACK
+        pixels = framed(pixels, self._framing, backdrop)
+        return thinned(pixels, backdrop or BLACK, scene.opacity)
+
+
+def open_stage(device: Device, job: Job, info: MediaInfo, framing: Framing) -> Stage:
+    """Make what draws the frames of a job.
+
+    Args:
+        device: Where kernels run.
+        job: Says how the output looks.
+        info: The source.
+        framing: Where the picture lies on the output.
+
+    Raises:
+        OptionError: If an option does not fit the source.
+        MediaError: If a texture cannot be read.
+    """
+    look, model = job.look, job.solve.model
+    wardrobe = Wardrobe(device, (info.width, info.height), framing.picture, look, model)
+    show = show_of(look, model, info)
+    return Stage(wardrobe, framing, look, model, show, _frames(job, info))
+
+
+def check_stage(job: Job, info: MediaInfo) -> None:
+    """Find out before any work is done whether the times and curves of a timeline hold.
+
+    Args:
+        job: The job.
+        info: Its source.
+
+    Raises:
+        OptionError: If they do not.
+    """
+    show = show_of(job.look, job.solve.model, info)
+    if show is not None:
+        show.check(*_frames(job, info))
+
+
+def _frames(job: Job, info: MediaInfo) -> tuple[int, int]:
+    """Numbers of the first and the last frame that are drawn, as far as is known."""
+    wanted = job.solve.frame_range
+    last = info.first_frame if info.last_frame is None else info.last_frame
+    first = min(max(wanted.first, info.first_frame), last)
+    return first, last if wanted.last is None else min(max(wanted.last, first), last)

@@ -1,0 +1,146 @@
+"""What time it is: seconds, frames, beats and bars of one film."""
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+
+from pipeline.timeline.times import Span, Unit, When
+from stages.hearing.heard import Heard
+from stages.media import MediaInfo
+from warp_kernels.errors import OptionError
+
+USUAL_RATE = Fraction(25)
+"""Frames a second of what carries no times."""
+_NEAR = Fraction(1, 4)
+"""A frame that is off its place at an even rate by no more than this part of a frame is shown at
+that place: containers round times."""
+NO_BEAT = "nothing is heard that has beats; give --audio or --beats FILE, or write bpm = 120 on top"
+"""What to say where beats are counted and there are none."""
+
+
+@dataclass(frozen=True, eq=False)
+class Clock:
+    """The time of a film."""
+
+    rate: Fraction
+    """Frames a second."""
+    first: int
+    """Number of the film's first frame."""
+    count: int | None
+    """Frames of the film, None if unknown."""
+    heard: Heard | None
+    """Its beats and bars, in its own time; None where there are none."""
+
+    @classmethod
+    def of(cls, info: MediaInfo, heard: Heard | None) -> "Clock":
+        """The clock of a source.
+
+        Args:
+            info: The source.
+            heard: Its beats and bars.
+        """
+        return cls(info.average_rate or USUAL_RATE, info.first_frame, info.frame_count, heard)
+
+    @property
+    def end(self) -> float | None:
+        """When the film ends [s], None if unknown."""
+        return None if self.count is None else float(self.count / self.rate)
+
+    @property
+    def beats(self) -> Heard:
+        """Beats and bars.
+
+        Raises:
+            OptionError: If there are none.
+        """
+        if self.heard is None or not self.heard.has_beats:
+            raise OptionError(NO_BEAT)
+        return self.heard
+
+    def time_of_frame(self, index: int, shown: Fraction | None = None) -> float:
+        """When a frame is shown [s].
+
+        Args:
+            index: Its number in the source.
+            shown: When the file shows it [s from the first frame]; None for an even rate.
+        """
+        even = (index - self.first) / self.rate
+        is_even = shown is None or abs(shown - even) * self.rate <= _NEAR
+        return float(even if is_even or shown is None else shown)
+
+    def frame_at(self, time: float) -> int:
+        """Number of the frame that is nearest to a time [s]."""
+        return self.first + round(time * float(self.rate))
+
+    def on_a_frame(self, time: float) -> float:
+        """The time [s] of the frame that is nearest to one."""
+        return self.time_of_frame(self.frame_at(time))
+
+    def time_of(self, when: When, before: float = 0.0) -> float:
+        """The time of a moment [s], not yet that of a frame.
+
+        Args:
+            when: The moment.
+            before: The one before it [s].
+
+        Raises:
+            OptionError: If it counts beats and there are none, or the end is unknown.
+        """
+        if when.is_end:
+            if self.end is None:
+                raise OptionError("end: the length of the source is unknown; write a time")
+            return self.end
+        if when.is_relative:
+            return self.later(before, when.span)
+        amount = float(when.span.amount)
+        if when.span.unit is Unit.BARS:
+            return self.beats.time_of_bar(amount + 1, float(when.beat) + 1)
+        if when.span.unit is Unit.BEATS:
+            return float(self.beats.time_of_beat(amount))
+        if when.span.unit is Unit.FRAMES:
+            return float((when.span.amount - self.first) / self.rate)
+        return amount
+
+    def later(self, time: float, span: Span) -> float:
+        """A length of time after another time [s].
+
+        Args:
+            time: The other time [s].
+            span: How much later.
+
+        Raises:
+            OptionError: If it counts beats and there are none.
+        """
+        amount = float(span.amount)
+        if span.unit is Unit.FRAMES:
+            return time + amount / float(self.rate)
+        if span.unit is Unit.BEATS:
+            return float(self.beats.time_of_beat(self.beats.beat_at(time) + amount))
+        if span.unit is Unit.BARS:
+            return self.beats.time_of_bar(float(self.beats.bar_at(time)) + amount)
+        return time + amount
+
+    def name_of(self, time: float) -> str:
+        """A time as people say it, for messages and tables: `0:12.50`, and its bar if it has one.
+
+        Args:
+            time: [s]
+        """
+        minutes, seconds = divmod(round(time, 2), 60)
+        text = f"{int(minutes)}:{seconds:05.2f}"
+        if self.heard is None or not self.heard.has_beats:
+            return text
+        return f"{text} bar {self.bar_name(time)}"
+
+    def bar_name(self, time: float) -> str:
+        """The bar and the beat of a time, such as `9.3`; of one before the first bar its beat.
+
+        Args:
+            time: [s]
+        """
+        beats = self.beats
+        bar = int(np.floor(float(beats.bar_at(time)) + 1e-3))
+        start = float(beats.beat_at(beats.time_of_bar(bar)))
+        beat = float(beats.beat_at(time)) - start + 1
+        return f"{bar}" if abs(beat - 1) < 0.02 else f"{bar}.{round(beat, 2):g}"

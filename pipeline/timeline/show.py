@@ -1,0 +1,385 @@
+"""The look of a frame: a timeline at the times of one film."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from pipeline.options.look import Look
+from pipeline.timeline.clock import Clock
+from pipeline.timeline.expression import Expression
+from pipeline.timeline.keyframes import Keyed
+from pipeline.timeline.signals import Signals
+from pipeline.timeline.targets import (
+    OWN,
+    PICTURE,
+    Kind,
+    Target,
+    found_in,
+    kind_of_target,
+    with_members,
+)
+from pipeline.timeline.timeline import CUT, Curve, Section, Timeline, Transition
+from warp_kernels.errors import OptionError
+
+CHUNK = 256
+"""Frames whose values are worked out together."""
+
+
+@dataclass(frozen=True)
+class Setting:
+    """How a section looks at a frame."""
+
+    section: int
+    """Number of the section."""
+    look: Look
+    """Its look, with the values of the curves."""
+    opacity: float = 1.0
+    """How much of the picture is seen before its background."""
+
+
+@dataclass(frozen=True)
+class Instant:
+    """What is drawn at a frame."""
+
+    scene: Setting
+    """The section that it belongs to."""
+    before: Setting | None = None
+    """The section that is on its way out, if one is."""
+    transition: Transition | None = None
+    """How."""
+    share: float = 1.0
+    """How much of the way is done, above 0 and below 1 while there is a section before."""
+
+
+@dataclass(frozen=True, eq=False)
+class Driven:
+    """One curve in one section: its values."""
+
+    target: Target
+    """What changes."""
+    kind: Kind
+    """Which values it takes."""
+    course: Keyed | Expression
+    """How."""
+    clock: Clock
+    """The time of the film."""
+    span: tuple[float, float]
+    """Begin and end of what `progress` runs through [s]."""
+    chunks: dict[int, np.ndarray] = field(default_factory=dict)
+    """Values that were worked out, by the number of their chunk."""
+
+    def at(self, index: int, time: float, shot: int) -> Any:
+        """The value at a frame.
+
+        Args:
+            index: Number of the frame.
+            time: When it is shown [s].
+            shot: Number of the frame with which its shot begins.
+
+        Raises:
+            OptionError: If it is no number.
+        """
+        if isinstance(self.course, Keyed):
+            value = self.course.at(time)
+            return self.kind.bounded(value) if self.kind.is_number else value
+        if self.course.changes_with_shots or time != self.clock.time_of_frame(index):
+            one = Signals(
+                self.clock, np.array([index]), np.array([time]), np.array([shot]), self.span
+            )
+            return self.kind.bounded(float(self.course.at(one)[0]))
+        chunk, place = divmod(index, CHUNK)
+        return self.kind.bounded(float(self._chunk(chunk)[place]))
+
+    def values(self, first: int, last: int) -> np.ndarray:
+        """The numbers of an expression at all frames from one to another, unbounded, [N]."""
+        parts = [self._chunk(number) for number in range(first // CHUNK, last // CHUNK + 1)]
+        begin = first // CHUNK * CHUNK
+        return np.concatenate(parts)[first - begin : last + 1 - begin]
+
+    def turns(self, first: int, last: int) -> set[int]:
+        """Frames at which the value is of another kind than before: at keys, at bounds.
+
+        Args:
+            first: Number of the first frame that is looked at.
+            last: Number of the last one.
+        """
+        if isinstance(self.course, Keyed):
+            at = {self.clock.frame_at(time) for time in self.course.times}
+            return {frame + step for frame in at for step in (-1, 0, 1)}
+        values = self.values(first, last)
+        ends = [value for value in (self.kind.least, self.kind.most, 0.0, 1.0)]
+        places = [int(values.argmin()), int(values.argmax())]
+        places += [int(np.abs(values - end).argmin()) for end in ends if np.isfinite(end)]
+        return {first + place for place in places}
+
+    def _chunk(self, number: int) -> np.ndarray:
+        """Values of many frames at once; those of any frame do not depend on the others."""
+        if number not in self.chunks:
+            assert isinstance(self.course, Expression)
+            frames = np.arange(number * CHUNK, (number + 1) * CHUNK)
+            last = None if self.clock.count is None else self.clock.first + self.clock.count - 1
+            frames = np.clip(frames, self.clock.first, last)
+            times = np.array([self.clock.time_of_frame(int(index)) for index in frames])
+            signals = Signals(self.clock, frames, times, np.full_like(frames, frames[0]), self.span)
+            self.chunks[number] = self.course.at(signals)
+        return self.chunks[number]
+
+
+@dataclass(frozen=True, eq=False)
+class Placed:
+    """A section at its time."""
+
+    section: Section
+    """The section."""
+    look: Look
+    """Its look with the styles that are shown."""
+    first: int
+    """Number of its first frame."""
+    ends: int
+    """Number of the first frame that the transition into it does not reach."""
+    lines: tuple[Driven, ...]
+    """What changes in it."""
+    made: dict[tuple[Any, ...], Setting] = field(default_factory=dict)
+    """The scene of the last values: most frames differ from the one before in few."""
+
+
+class Show:
+    """A timeline at the times of one film.
+
+    Args:
+        timeline: What the file says.
+        clock: The time of the film.
+        looks: The looks of its sections, with the styles that are shown.
+
+    Raises:
+        OptionError: If sections or keys are not in order, or beats are counted and there are none.
+    """
+
+    def __init__(self, timeline: Timeline, clock: Clock, looks: tuple[Look, ...]) -> None:
+        self.timeline = timeline
+        self.clock = clock
+        begins = list(_begins(timeline, clock, looks))
+        self.sections: list[Placed] = []
+        """The sections, in order."""
+        for number, (section, look, begin) in enumerate(begins):
+            end = begins[number + 1][2] if number + 1 < len(begins) else clock.end
+            end = begin + 1.0 if end is None else end
+            self._place(number, section, look, begin, end)
+
+    def at(self, index: int, shown: Fraction | None = None, shot: int = 0) -> Instant:
+        """What is drawn at a frame; it depends on nothing but the frame.
+
+        Args:
+            index: Number of the frame in the source.
+            shown: When it is shown [s from the first frame]; None for an even rate.
+            shot: Number of the frame with which its shot begins.
+
+        Raises:
+            OptionError: If an expression is no number there.
+        """
+        time = self.clock.time_of_frame(index, shown)
+        frame = self.clock.frame_at(time)  # where frames come unevenly, their times count
+        number = max(i for i, one in enumerate(self.sections) if i == 0 or one.first <= frame)
+        placed = self.sections[number]
+        scene = self._scene(number, index, time, shot)
+        if frame >= placed.ends or number == 0:
+            return Instant(scene)
+        share = (frame - placed.first + 1) / (placed.ends - placed.first + 1)
+        before = self._scene(number - 1, index, time, shot)
+        return Instant(scene, before, placed.section.transition, share)
+
+    def _scene(self, number: int, index: int, time: float, shot: int) -> Setting:
+        placed = self.sections[number]
+        seen = [line for line in placed.lines if not line.target.is_mesh]
+        values = tuple(line.at(index, time, shot) for line in seen)
+        if values not in placed.made:
+            placed.made.clear()
+            placed.made[values] = _scene_of(number, placed, seen, values)
+        return placed.made[values]
+
+    def foreseen(self, first: int, last: int) -> list[Setting]:
+        """Scenes of every kind that some frames will show, as far as that can be told.
+
+        Args:
+            first: Number of the first frame that is drawn.
+            last: Number of the last one.
+        """
+        found: list[Setting] = []
+        for number, placed in enumerate(self.sections):
+            later = self.sections[number + 1] if number + 1 < len(self.sections) else None
+            begin = max(first, placed.first) if number else first
+            end = last if later is None else min(last, max(later.first, later.ends) - 1)
+            frames = {begin, end}
+            for line in placed.lines:
+                if not line.target.is_mesh and begin <= end:
+                    frames |= line.turns(begin, end)
+            shown = sorted(f for f in frames if begin <= f <= end)
+            found += [self._scene(number, f, self.clock.time_of_frame(f), f) for f in shown]
+        return found or [self._scene(0, first, self.clock.time_of_frame(first), first)]
+
+    @property
+    def notes(self) -> list[str]:
+        """Choices that were made, one sentence each."""
+        return []
+
+    def mesh_at(self, index: int, name: str) -> float | None:
+        """What changes meshes, at a frame; None where the file says nothing.
+
+        Args:
+            index: Number of the frame in the source.
+            name: One of `targets.MESH`.
+        """
+        number = max(i for i, one in enumerate(self.sections) if i == 0 or one.first <= index)
+        placed = self.sections[number]
+        for line in placed.lines:
+            if str(line.target) == name:
+                return float(line.at(index, self.clock.time_of_frame(index), 0))
+        return placed.section.mesh.get(name)
+
+    def check(self, first: int, last: int) -> None:
+        """Find expressions that are no numbers before anything is drawn.
+
+        Args:
+            first: Number of the first frame that is looked at.
+            last: Number of the last one.
+
+        Raises:
+            OptionError: If there is one.
+        """
+        for number, placed in enumerate(self.sections):
+            later = self.sections[number + 1] if number + 1 < len(self.sections) else None
+            begin = max(first, placed.first)
+            end = last if later is None else min(last, max(later.first, later.ends) - 1)
+            for line in placed.lines:
+                if isinstance(line.course, Expression) and begin <= end:
+                    line.values(begin, end)
+
+    def _place(self, number: int, section: Section, look: Look, begin: float, end: float) -> None:
+        """Put a section at its time."""
+        clock, timeline = self.clock, self.timeline
+        first = clock.frame_at(begin)
+        ends = first
+        if number and section.transition.kind != "cut":
+            try:
+                ends = clock.frame_at(clock.later(begin, section.transition.span))
+            except OptionError as error:
+                raise section.place.error(error) from error
+            if ends > clock.frame_at(end):
+                raise section.place.error(
+                    f"the transition of {section.transition.span} into {section.name} is longer "
+                    f"than the section, {end - begin:.2f} s; shorten it"
+                )
+        own = {curve.target for curve in section.curves}
+        whole = (0.0, clock.end or end)
+        lines = [
+            *_lines([c for c in timeline.curves if c.target not in own], look, clock, 0.0, whole),
+            *_lines(section.curves, look, clock, begin, (begin, end)),
+        ]
+        self.sections.append(Placed(section, look, first, ends, tuple(lines)))
+
+
+def _begins(
+    timeline: Timeline, clock: Clock, looks: tuple[Look, ...]
+) -> Iterator[tuple[Section, Look, float]]:
+    """Sections with their looks and beginnings [s], and the gaps that ends leave between them."""
+    base, before, gap = looks[0], 0.0, None
+    last = -1
+    for number, (section, look) in enumerate(zip(timeline.sections, looks[1:], strict=True)):
+        begin, place = _time(section, clock, before), section.begin_place
+        if gap is not None and gap < begin - 0.5 / float(clock.rate):
+            yield _gap(timeline, section, gap, base)
+            last = clock.frame_at(gap)
+        frame = clock.frame_at(begin)
+        if number and frame <= last:
+            raise place.error(
+                f"{section.name} begins at {clock.name_of(begin)}, and the section before it ends "
+                f"or begins at frame {last}; put sections in order"
+            )
+        if clock.count is not None and frame >= clock.first + clock.count:
+            raise place.error(
+                f"{section.name} begins at {clock.name_of(begin)}, and the film ends at "
+                f"{clock.name_of(clock.end or 0.0)}; leave it out, or begin earlier"
+            )
+        yield section, look, begin
+        before, last = begin, frame
+        gap = None if section.end is None else _end(section, clock, begin)
+        if gap is not None and clock.frame_at(gap) <= frame:
+            raise section.place.error(f'{section.name} ends before it begins; write to = "+4s"')
+    if gap is not None and (clock.end is None or gap < clock.end):
+        yield _gap(timeline, timeline.sections[-1], gap, base)
+
+
+def _gap(
+    timeline: Timeline, near: Section, begin: float, base: Look
+) -> tuple[Section, Look, float]:
+    """What is seen where a section has ended and none has begun."""
+    section = replace(near, name="between", look=base, curves=(), mesh={}, transition=CUT)
+    return section, base, begin
+
+
+def _time(section: Section, clock: Clock, before: float) -> float:
+    try:
+        return clock.time_of(section.begin, before)
+    except OptionError as error:
+        raise section.begin_place.error(error) from error
+
+
+def _end(section: Section, clock: Clock, begin: float) -> float:
+    assert section.end is not None
+    try:
+        return clock.time_of(section.end, begin)
+    except OptionError as error:
+        raise section.place.error(error) from error
+
+
+def _lines(
+    curves: "tuple[Curve, ...] | list[Curve]",
+    look: Look,
+    clock: Clock,
+    start: float,
+    span: tuple[float, float],
+) -> Iterator[Driven]:
+    """The curves that are seen in a look."""
+    for curve in curves:
+        kind = kind_of_target(curve.target, look)
+        if kind is None:
+            continue
+        course: Keyed | Expression
+        if not isinstance(curve.course, Expression):
+            course = Keyed.of(curve.course, clock, start)
+        elif curve.target.is_mesh and curve.course.changes_with_shots:
+            raise curve.place.error(
+                f"{curve.target}: meshes are solved before shots are known; leave shot out"
+            )
+        else:
+            course = curve.course
+        yield Driven(curve.target, kind, course, clock, span)
+
+
+def _scene_of(number: int, placed: Placed, lines: list[Driven], values: tuple[Any, ...]) -> Setting:
+    """The look of a section with some values in it."""
+    look, opacity = placed.look, 1.0
+    changes: dict[tuple[str, int | None], dict[str, Any]] = {}
+    members: dict[tuple[str, int | None], Any] = {}
+    own: Mapping[str, Any] = {}
+    for line, value in zip(lines, values, strict=True):
+        target = line.target
+        if line.kind.name == "int":
+            value = int(value)
+        if not target.owner:
+            if target.parameter == PICTURE:
+                opacity = value
+            elif target.parameter in OWN:
+                own = {**own, target.parameter: value}
+            continue
+        slot = found_in(look, target)
+        assert slot is not None
+        key = slot.field, slot.place
+        members[key] = slot.member
+        changes.setdefault(key, {})[target.parameter] = value
+    changed = {key: replace(members[key], **given) for key, given in changes.items()}
+    look = with_members(look, changed)
+    return Setting(number, replace(look, **own) if own else look, opacity)

@@ -1,0 +1,158 @@
+"""Times as people write them: `12.5s`, `1:02.5`, `f240`, `b32`, `bar 9.3`, `+4 bars`, `end`."""
+
+import re
+from dataclasses import dataclass
+from enum import Enum
+from fractions import Fraction
+
+_NUMBER = r"(\d+(?:\.\d*)?|\.\d+)"
+_CLOCK = re.compile(r"(?:(\d+):)?(\d+):(\d+(?:\.\d*)?)")
+_SPAN = re.compile(rf"{_NUMBER} *(ms|s|sec|seconds?|frames?|f|beats?|bars?)")
+_FRAME = re.compile(r"f(?:rame)? *(\d+)")
+_BEAT = re.compile(rf"b(?:eat)? *{_NUMBER}")
+_BAR = re.compile(r"bar *(\d+)(?:\.(\d+(?:\.\d+)?))?")
+
+FORM = "write 12.5s, 1:02.5, f240, b32, bar 9, bar 9.3, start, end, or +4 bars after another"
+"""How times are written, for messages."""
+SPAN_FORM = "write 2s, 250ms, 12 frames, 1 beat or 4 bars"
+"""How spans of time are written, for messages."""
+
+
+class Unit(Enum):
+    """What a time is counted in."""
+
+    SECONDS = "s"
+    FRAMES = "frames"
+    BEATS = "beats"
+    BARS = "bars"
+
+    @property
+    def needs_beats(self) -> bool:
+        """Whether something must be heard to know what time it is."""
+        return self in (Unit.BEATS, Unit.BARS)
+
+
+@dataclass(frozen=True)
+class Span:
+    """A length of time."""
+
+    amount: Fraction
+    """How long, 0 or more."""
+    unit: Unit
+    """In what."""
+
+    def __str__(self) -> str:
+        return f"{float(self.amount):g} {self.unit.value}"
+
+
+@dataclass(frozen=True)
+class When:
+    """A moment: so long after the beginning of the film, or after another moment."""
+
+    span: Span
+    """How long; bars and beats of a bar count from 0 here."""
+    beat: Fraction = Fraction(0)
+    """Beats into the bar."""
+    is_relative: bool = False
+    """Whether it counts from the moment before it in the file."""
+    is_end: bool = False
+    """Whether it is the end of the film."""
+
+    @property
+    def needs_beats(self) -> bool:
+        """Whether something must be heard to know when it is."""
+        return self.span.unit.needs_beats
+
+
+START = When(Span(Fraction(0), Unit.SECONDS))
+"""The beginning of the film."""
+
+
+def parse_when(text: str) -> When:
+    """Read a moment.
+
+    Args:
+        text: What the user wrote.
+
+    Raises:
+        ValueError: If it is none; the message says what is.
+    """
+    plain = " ".join(text.lower().split())
+    if plain.startswith("+"):
+        return When(parse_span(plain[1:].strip()), is_relative=True)
+    if plain in ("start", "0"):
+        return START
+    if plain == "end":
+        return When(START.span, is_end=True)
+    found = _clock(plain) or _bar(plain)
+    if found is not None:
+        return found
+    for form, unit in ((_FRAME, Unit.FRAMES), (_BEAT, Unit.BEATS)):
+        match = form.fullmatch(plain)
+        if match is not None:
+            return When(Span(Fraction(match[1]), unit))
+    match = _SPAN.fullmatch(plain)
+    if match is not None:
+        span = parse_span(plain)
+        if span.unit is Unit.SECONDS:
+            return When(span)
+        raise ValueError(f"{text!r}: {_instead(span)}")
+    if re.fullmatch(_NUMBER, plain):
+        forms = f"{plain}s, f{plain.split('.')[0]} or b{plain}"
+        raise ValueError(f"{text!r} has no unit; write {forms}")
+    raise ValueError(f"{text!r} is no time; {FORM}")
+
+
+def parse_span(text: str) -> Span:
+    """Read a length of time, such as `2s`, `12 frames` or `4 bars`.
+
+    Args:
+        text: What the user wrote.
+
+    Raises:
+        ValueError: If it is none; the message says what is.
+    """
+    plain = " ".join(text.lower().split())
+    clock = _clock(plain)
+    if clock is not None:
+        return clock.span
+    match = _SPAN.fullmatch(plain)
+    if match is None:
+        raise ValueError(f"{text!r} is no length of time; {SPAN_FORM}")
+    amount, unit = Fraction(match[1]), match[2]
+    if unit == "ms":
+        return Span(amount / 1000, Unit.SECONDS)
+    units = {"s": Unit.SECONDS, "f": Unit.FRAMES, "be": Unit.BEATS, "ba": Unit.BARS}
+    return Span(amount, units.get(unit[:2]) or units[unit[0]])
+
+
+def _clock(plain: str) -> When | None:
+    match = _CLOCK.fullmatch(plain)
+    if match is None:
+        return None
+    minutes, seconds = int(match[2]), Fraction(match[3])
+    if seconds >= 60 or (match[1] and minutes >= 60):
+        raise ValueError(f"{plain!r}: minutes and seconds of a clock go up to 59")
+    total = int(match[1] or 0) * 3600 + minutes * 60 + seconds
+    return When(Span(Fraction(total), Unit.SECONDS))
+
+
+def _bar(plain: str) -> When | None:
+    match = _BAR.fullmatch(plain)
+    if match is None:
+        return None
+    bar, beat = int(match[1]), Fraction(match[2] or 1)
+    if bar < 1 or beat < 1:
+        raise ValueError(f"{plain!r}: bars and the beats of a bar count from 1")
+    return When(Span(Fraction(bar - 1), Unit.BARS), beat - 1)
+
+
+def _instead(span: Span) -> str:
+    """What to write for a length where a moment is wanted."""
+    amount = f"{float(span.amount):g}"
+    own = {
+        Unit.FRAMES: f"f{amount}",
+        Unit.BEATS: f"b{amount}",
+        Unit.BARS: f"bar {int(span.amount) + 1}",
+    }
+    return f"is a length, not a moment; write {own[span.unit]}, or +{amount} {span.unit.value}"
