@@ -27,6 +27,8 @@ CASES = [
     ("trimotion render a.mtrk --size ", "", set(NAMED_SIZES), set()),
     ("trimotion render a.mtrk --f", "--f", {"--fit", "--frames"}, {"--focus"}),
     ("trimotion animate --preset ", "", {"preview", "fine"}, set()),
+    ("trimotion animate --codec ", "", {"h264", "av1"}, {"gif"}),
+    ("trimotion render --background re", "re", {"red"}, {"white"}),
     ("trimotion --debug animate --device ", "", {"auto", "cpu"}, set()),
     ("trimotion styles hat", "hat", {"hatching"}, {"flat"}),
     ("trimotion help ", "", set(cli.COMMANDS), set()),

@@ -1,5 +1,6 @@
 """The package that docs/extending.md shows, beside others: some that work, some that do not."""
 
+import json
 import os
 import re
 import subprocess
@@ -107,6 +108,10 @@ def test_members_are_listed(packages: Path) -> None:
         assert f"{name}  cannot be used: the package more 1.0 does not work here" in line
         assert word in line
     assert "dis  Stillness. [more 1.0]" not in lines  # a name that is taken
+    told = json.loads(run(packages, "styles --json").stdout)
+    assert [p["name"] for p in told["--layout"]["cells"]["parameters"]] == ["rows"]
+    assert told["--flow"] == {"still": {"summary": "Stillness.", "parameters": []}}
+    assert "no_such_module" in told["--focus"]["broken"]["error"]
 
 
 def test_help_names_members_without_importing_them(packages: Path) -> None:

@@ -131,7 +131,7 @@ def test_command_line_beats_preset(tmp_path: Path) -> None:
         ("trianglez = 3", ["trianglez", "triangles"]),
         ("[more]\ntriangles = 3", ["more"]),
         ("triangles = 3.5", ["3.5", "whole number"]),
-        ("triangles = true", ["True", "number"]),
+        ("triangles = true", ["triangles = true", "number"]),
         ("independent = 1", ["independent", "true or false"]),
         ("style = [[1]]", ["style"]),
         ("size = 'big'", ["big", "WxH"]),
@@ -174,6 +174,12 @@ def test_unknown_parameter_lists_what_is_allowed(flag: str, name: str, registry:
     assert "'nonsense'" in str(caught.value)
     for field in dataclasses.fields(registry[name]):
         assert field.name in str(caught.value)
+
+
+def test_mistyped_preset_is_told_the_near_one() -> None:
+    """Of those that come with the program."""
+    with pytest.raises(OptionError, match=r"did you mean fine\? Else give a TOML file or one of"):
+        read_preset("fin")
 
 
 def test_message_of_a_member_is_not_doubled() -> None:

@@ -36,7 +36,8 @@ def list_styles(only: str | None = None, *, as_json: bool) -> str:
         STYLES[only]
     wanted = [name for name in STYLES if only in (None, name)]
     if as_json:
-        return json.dumps({name: _style_facts(name) for name in wanted}, indent=2)
+        found = {name: _member_facts(STYLES, name) for name in wanted}
+        return json.dumps(found | ({} if only is not None else _added_facts()), indent=2)
     if only is not None:
         return "\n".join(_member(STYLES, only))
     lines = ["--style NAME, or NAME:PARAMETER=VALUE,...; repeat it to lay one over the other", ""]
@@ -44,13 +45,19 @@ def list_styles(only: str | None = None, *, as_json: bool) -> str:
         lines += _member(STYLES, name, without=SHARED)
     lines.append("every style")
     lines += _rows(p for p in parameters(Style) if p.name in SHARED)
+    for flag, registry in _extended():
+        lines += ["", f"{flag}, from installed packages"]
+        for name in registry.added:
+            lines += _member(registry, name)
+    return "\n".join(lines)
+
+
+def _extended() -> Iterator[tuple[str, Registry[Any]]]:
+    """Options besides `--style` to which installed packages add members."""
     for option in job_options():
         registry = option.registry
         if registry is not None and registry is not STYLES and registry.added:
-            lines += ["", f"--{option.flag}, from installed packages"]
-            for name in registry.added:
-                lines += _member(registry, name)
-    return "\n".join(lines)
+            yield f"--{option.flag}", registry
 
 
 def registry_help() -> str:
@@ -75,10 +82,18 @@ def _member(registry: Registry[Any], name: str, without: tuple[str, ...] = ()) -
     return [f"{name}  {_summary(cls)}{origin}", *rows]
 
 
-def _style_facts(name: str) -> dict[str, object]:
-    """A style for programs."""
+def _added_facts() -> dict[str, object]:
+    """What packages add to other options, by flag; no style has such a name."""
+    return {
+        flag: {name: _member_facts(registry, name) for name in registry.added}
+        for flag, registry in _extended()
+    }
+
+
+def _member_facts(registry: Registry[Any], name: str) -> dict[str, object]:
+    """A member for programs."""
     try:
-        cls = STYLES[name]
+        cls = registry[name]
     except OptionError as error:
         return {"error": str(error)}
     return {"summary": _summary(cls), "parameters": [_facts(p) for p in parameters(cls)]}

@@ -7,6 +7,7 @@ from typing import Any
 
 from pipeline.library.keywords import PRESET, TAKEN, options_of
 from pipeline.options.command_line import Option, with_preset
+from pipeline.options.written import in_program
 from warp_kernels.errors import OptionError
 
 INSTEAD = {
@@ -48,7 +49,7 @@ def _read(option: Option, name: str, value: object) -> object:
         if not isinstance(value, bool):
             raise OptionError(f"{name}={value!r}: give True or False")
         return value
-    return option.value(value, name, "=")
+    return option.value(value, name, in_program)
 
 
 def file_name(what: str, value: object) -> str:

@@ -1,7 +1,6 @@
 """The options of `animate`: fields, with help, of the dataclasses that are parts of a `Job`."""
 
 import argparse
-import reprlib
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import MISSING, Field, dataclass, fields, is_dataclass
 from fractions import Fraction
@@ -13,6 +12,7 @@ from pipeline.options.output import Output
 from pipeline.options.run import Run
 from pipeline.options.solve_options import SolveOptions
 from pipeline.options.values import kind_of, read_value
+from pipeline.options.written import in_file
 from warp_kernels.errors import OptionError
 from warp_kernels.registry import Registry
 
@@ -61,21 +61,21 @@ class Option:
         """Whether every use adds a value."""
         return self.kind.endswith(", ...]")
 
-    def value(self, given: object, what: str, sign: str = " = ") -> object:
+    def value(self, given: object, what: str, written: Callable[[object], str] = in_file) -> object:
         """The value that the command line would give for one of a file or a program.
 
-        Messages begin with `what`, where it stands, and have a sign between that and the value.
+        Messages begin with `what`, where it stands; the value follows as it is written there.
 
         Raises:
             OptionError: If the value is of another kind, or none that the option may have.
         """
         if not self.is_repeatable:
-            return self._single(given, what, sign)
+            return self._single(given, what, written)
         entries = given if isinstance(given, list | tuple) else [given]
-        return [self._single(entry, what, sign) for entry in entries]
+        return [self._single(entry, what, written) for entry in entries]
 
-    def _single(self, given: object, what: str, sign: str) -> object:
-        shown = f"{what}{sign}{' '.join(reprlib.repr(given).split())}"
+    def _single(self, given: object, what: str, written: Callable[[object], str]) -> object:
+        shown = what + written(given)
         if self.is_switch:
             if not isinstance(given, bool):
                 raise OptionError(f"{shown}: write true or false")

@@ -4,6 +4,7 @@ import tomllib
 from pathlib import Path
 
 from pipeline.options.command_line import job_options
+from pipeline.options.nearest import nearest
 from stages.media.text_file import read_text
 from warp_kernels.errors import OptionError
 
@@ -25,8 +26,8 @@ def read_preset(name: str) -> dict[str, object]:
         table = tomllib.loads(read_text(shipped.get(name, Path(name))))
     except OSError as error:
         raise OptionError(
-            f"--preset {name}: cannot be read ({str(error.strerror).lower()}); give a TOML file "
-            f"or one of {', '.join(shipped)}"
+            f"--preset {name}: cannot be read ({str(error.strerror).lower()}); "
+            f"{nearest(name, shipped, 'give a TOML file or one of')}"
         ) from error
     except ValueError as error:
         raise OptionError(f"--preset {name}: not a TOML file ({error}); mend it") from error

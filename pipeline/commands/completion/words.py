@@ -2,15 +2,27 @@
 
 import argparse
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from pipeline.options.command_line import job_options
 from pipeline.options.presets import shipped_presets
+from pipeline.timeline.timeline import shipped_timelines
 from stages.look.output_size import NAMED_SIZES
+from stages.media.writing.codecs import VIDEO_CODECS
+from warp_kernels.styles.color_names import COLOR_NAMES
 
 MOST_LETTERS = 70
 """Letters of a description."""
+
+LISTED: dict[str, Iterable[str]] = {
+    "preset": shipped_presets(),
+    "timeline": shipped_timelines(),
+    "output_size": NAMED_SIZES,
+    "codec": VIDEO_CODECS,
+    "background": COLOR_NAMES,
+}
+"""Names that are values of an option, beside others."""
 
 _FILE = re.compile(r"FILE|INPUT|OUTPUT|SOURCE|PICTURE|MAP|MASK|\.mtrk|\.png")
 _WORD = re.compile(r"[a-z0-9]+")
@@ -83,10 +95,7 @@ def _option(action: argparse.Action) -> OptionWords:
 
 def _values(action: argparse.Action) -> Iterator[str]:
     """Values of an option that can be listed: choices, members of its family, names."""
-    if action.dest == "preset":
-        yield from shipped_presets()
-    if action.dest == "output_size":
-        yield from NAMED_SIZES
+    yield from LISTED.get(action.dest, ())
     family = {option.dest: option.registry for option in job_options()}.get(action.dest)
     if family is not None:
         yield from family

@@ -119,6 +119,8 @@ ENCODERS = {
     "gif": VideoCodec("gif", ("pal8",), None, 0, 0, {}),
 }
 """By the name that users give."""
+VIDEO_CODECS = sorted(ENCODERS.keys() - {"gif"})
+"""Those that users choose from; a GIF has its own."""
 
 _ALIASES = {
     "avc": "h264",
@@ -144,8 +146,7 @@ def find_encoder(codec: str) -> VideoCodec:
     """
     key = _ALIASES.get(codec.lower(), codec.lower())
     if key not in ENCODERS:
-        known = ", ".join(sorted(set(ENCODERS) - {"gif"}))
-        raise OptionError(f"codec {codec!r}: not known; choose one of {known}")
+        raise OptionError(f"codec {codec!r}: not known; choose one of {', '.join(VIDEO_CODECS)}")
     encoder = ENCODERS[key]
     if encoder.name not in av.codecs_available:
         raise OptionError(
