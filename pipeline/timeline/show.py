@@ -221,6 +221,11 @@ class Show:
         return found or [self._scene(0, first, self.clock.time_of_frame(first), first)]
 
     @property
+    def transitions(self) -> set[str]:
+        """Kinds of transitions that there are."""
+        return {one.section.transition.kind for one in self.sections if one.ends > one.first}
+
+    @property
     def notes(self) -> list[str]:
         """Choices that were made, one sentence each."""
         return []
