@@ -124,6 +124,7 @@ COMMAND_OPTIONS: dict[str, Callable[[Option], bool]] = {
     "preview": lambda o: o.dest not in ("track", "resume", "jobs"),
     "plan": lambda o: o.group == "range" or o.dest == "cuts",
     "measure": lambda o: o in RANGE_OPTIONS,
+    "timeline": lambda o: o.dest in ("styles", "regions", "background", "fps"),
 }
 """Which options a command has."""
 
@@ -150,7 +151,7 @@ def commands_with(flag: str) -> list[str]:
     """Commands that have an option of a job, by its name; `preview` has those of `animate`."""
     found = [option for option in job_options() if option.flag == flag]
     owners = [name for name, has in COMMAND_OPTIONS.items() if any(map(has, found))]
-    return [name for name in owners if name != "preview"]
+    return [name for name in owners if name not in ("preview", "timeline")]
 
 
 def registry_help() -> str:
