@@ -57,6 +57,8 @@ def signals_at(frames: np.ndarray, clock: Clock = CLOCK) -> Signals:
         ("+12 frames", 3.5),
         ("start", 0.0),
         ("end", 20.0),
+        ("25%", 5.0),
+        ("bar at 26%", 6.0),
     ],
 )
 def test_times(text: str, seconds: float) -> None:

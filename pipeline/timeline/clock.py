@@ -87,10 +87,11 @@ class Clock:
         Raises:
             OptionError: If it counts beats and there are none, or the end is unknown.
         """
-        if when.is_end:
+        if when.share is not None:
             if self.end is None:
-                raise OptionError("end: the length of the source is unknown; write a time")
-            return self.end
+                raise OptionError("the length of the source is unknown; write seconds or bars")
+            time = float(when.share) * self.end
+            return self._nearest_bar(time) if when.is_on_bar else time
         if when.is_relative:
             return self.later(before, when.span)
         amount = float(when.span.amount)
@@ -101,6 +102,14 @@ class Clock:
         if when.span.unit is Unit.FRAMES:
             return float((when.span.amount - self.first) / self.rate)
         return amount
+
+    def _nearest_bar(self, time: float) -> float:
+        """The beginning of a bar [s], within the film."""
+        bar = round(float(self.beats.bar_at(time)))
+        begin = self.beats.time_of_bar(bar)
+        if self.end is not None and self.frame_at(begin) >= self.frame_at(self.end):
+            begin = self.beats.time_of_bar(bar - 1)
+        return max(begin, 0.0)
 
     def later(self, time: float, span: Span) -> float:
         """A length of time after another time [s].
