@@ -28,9 +28,9 @@ from pipeline.loop.animate import animate
 from pipeline.options.job import Job
 from pipeline.options.output import Output
 from pipeline.options.solve_options import SolveOptions
-from pipeline.options.values import size
 from pipeline.progress import Progress
 from stages.flows.none import NoFlow
+from stages.look.output_size import parse_size
 from stages.media import FrameRange, open_decoder
 from stages.topology.refine_options import RefineOptions
 from stages.triangulate_options import TriangulateOptions
@@ -115,7 +115,7 @@ def parse() -> argparse.Namespace:
     parser = program(__doc__)
     parser.add_argument("clips", nargs="*", default=[str(ROOT / "sample_videos")])
     parser.add_argument("--frames", default="0-21", metavar="A-B")
-    parser.add_argument("--size", type=size, default=(640, 360), metavar="WxH")
+    parser.add_argument("--size", type=parse_size, default=(640, 360), metavar="WxH")
     parser.add_argument("--triangles", type=int, default=1000)
     parser.add_argument("--write", action="store_true", help="write docs/results/coherence*")
     return parser.parse_args()

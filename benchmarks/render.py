@@ -24,7 +24,7 @@ from timing import (
 )
 
 from pipeline.options.members import parse_member
-from pipeline.options.values import size
+from stages.look.output_size import parse_size
 from stages.render import Renderer
 from stages.snapshot import Snapshot
 from warp_kernels.color_model import LINEAR
@@ -40,7 +40,7 @@ def parse() -> argparse.Namespace:
     """Read the command line."""
     parser = program(__doc__)
     parser.add_argument("picture", type=Path, nargs="?", default=DEFAULT_PICTURE)
-    parser.add_argument("--size", type=size, default=(1280, 720), metavar="WxH")
+    parser.add_argument("--size", type=parse_size, default=(1280, 720), metavar="WxH")
     parser.add_argument("--triangles", type=int, default=1500)
     parser.add_argument("--style", action="append", metavar="SPEC")
     parser.add_argument("--frames", type=int, default=40, help="frames timed for each stack")

@@ -115,7 +115,7 @@ def test_range_far_into_a_clip(tmp_path: Path) -> None:
 def test_range_by_time(tmp_path: Path) -> None:
     """Times count from the first frame."""
     path = samples.write_video(tmp_path / "a.mp4", clip(25))
-    part = frames_of(path, FrameRange().between(Fraction("0.4"), Fraction("0.5")))
+    part = frames_of(path, FrameRange.parse("0-", "0.4", "0.5"))
     assert [f.index for f in part] == [10, 11, 12]
 
 

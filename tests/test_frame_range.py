@@ -46,7 +46,7 @@ def test_both_ends_are_included() -> None:
 
 def test_times_bound_a_range() -> None:
     """Start and end times are both included."""
-    wanted = FrameRange().between(Fraction(1), Fraction(2))
+    wanted = FrameRange.parse("0-", "1", "2")
     assert [n for n in range(20) if wanted.holds(n, Fraction(n, 4))] == [4, 5, 6, 7, 8]
 
 

@@ -6,7 +6,7 @@ import media_samples as samples
 import pytest
 
 from pipeline.cli import main
-from stages.media import FrameRange, open_decoder, parse_time, probe
+from stages.media import FrameRange, open_decoder, probe
 from stages.media.writing.encoder_setup import EncodeOptions
 from stages.media.writing.output_plan import check_output
 from warp_kernels.errors import OptionError
@@ -47,7 +47,7 @@ def test_range_beyond_is_told(clip: Path, text: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize(("frames", "start"), [("0-2", "1"), ("0-2", "99"), ("8-9", "0")])
 def test_range_without_a_frame_tells_the_true_length(clip: Path, frames: str, start: str) -> None:
     """However early the decoder could stop."""
-    wanted = FrameRange.parse(frames).between(parse_time(start), None)
+    wanted = FrameRange.parse(frames, start)
     with open_decoder(clip, wanted) as decoder, pytest.raises(OptionError, match="frames 0 to 5"):
         next(decoder)
 

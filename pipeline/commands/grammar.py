@@ -5,11 +5,9 @@ import re
 from typing import Any, NoReturn
 
 from pipeline.commands.examples import ABOUT_ALL, EXAMPLES, shown
+from pipeline.commands.style_list import registry_help
 from pipeline.commands.unknown import no_command, unknown_arguments
-from pipeline.options.command_line import (
-    add_job_options,
-    registry_help,
-)
+from pipeline.options.command_line import add_job_options
 from pipeline.options.values import text_value, whole_number
 from pipeline.progress import CHOICES
 

@@ -1,4 +1,4 @@
-"""Styles, and what installed packages add to all registries, as people and programs read them."""
+"""Members of registries, also those that packages add, as people and programs read them."""
 
 import inspect
 import json
@@ -53,6 +53,17 @@ def list_styles(only: str | None = None, *, as_json: bool) -> str:
     return "\n".join(lines)
 
 
+def registry_help() -> str:
+    """A paragraph that lists the members of every registry, and the parameters of its own."""
+    lines = ["members and their parameters (NAME or NAME:KEY=VALUE,KEY=VALUE):"]
+    for option in job_options():
+        if option.registry is not None:
+            own = option.registry.own.items()
+            lines += [f"  --{option.flag} {_written(name, cls)}" for name, cls in own]
+            lines += [f"  --{option.flag} {name} (installed)" for name in option.registry.added]
+    return "\n".join(lines)
+
+
 def _member(registry: Registry[Any], name: str, without: tuple[str, ...] = ()) -> list[str]:
     """A member and its parameters, or why it cannot be used."""
     try:
@@ -99,6 +110,12 @@ def _given(parameter: Field[Any]) -> str:
     default = parameter.default
     shown = f"{default:g}" if isinstance(default, float) else str(default)
     return f"{parameter.name}={'FILE' if default in (None, MISSING) else shown}"
+
+
+def _written(name: str, cls: Any) -> str:
+    """A member with its parameters and their defaults, as it would be given."""
+    values = (f"{p.name}={'FILE' if p.default is None else p.default}" for p in parameters(cls))
+    return ":".join(filter(None, [name, ",".join(values)]))
 
 
 def _told(parameter: Field[Any]) -> str:

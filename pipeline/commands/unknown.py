@@ -4,7 +4,7 @@ import difflib
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from pipeline.options.command_line import commands_with
+from pipeline.options.command_line import COMMAND_OPTIONS, job_options
 from pipeline.options.nearest import nearest
 
 SEVERAL = ("animate", "solve", "render")
@@ -24,7 +24,10 @@ def unknown_arguments(arguments: Sequence[str], known: Sequence[str], command: s
     if not first.startswith("-"):
         apart = "; several inputs stand side by side" if command in SEVERAL else ""
         return f"{arguments[0]!r}: unknown argument{apart}"
-    owners = commands_with(first.lstrip("-"))
+    named = [option for option in job_options() if option.flag == first.lstrip("-")]
+    owners = [name for name, has in COMMAND_OPTIONS.items() if any(map(has, named))]
+    # what preview and timeline have is that of animate
+    owners = [name for name in owners if name not in ("preview", "timeline")]
     if owners:
         some = ", ".join(owners[:-1])
         owned = f"{some} and {owners[-1]}" if some else owners[-1]

@@ -12,8 +12,7 @@ from pipeline.options.members import parse_member, parse_region
 from pipeline.options.output import Output
 from pipeline.options.output_name import output_in
 from pipeline.options.run import Run
-from stages.media.frame_range import FrameRange, parse_time
-from warp_kernels.errors import OptionError
+from stages.media.frame_range import FrameRange
 from warp_kernels.styles import STYLES
 
 Part = TypeVar("Part")
@@ -60,11 +59,6 @@ def values_of(given: Mapping[str, Any]) -> dict[str, Any]:
             values[option.dest] = tuple(found) if option.is_repeatable else found[0]
     regions = given.get("regions", ())
     values["regions"] = tuple(parse_region("--region", text, STYLES) for text in regions)
-    cuts = given.get("cuts", "auto")
-    if cuts not in ("auto", "none") and not Path(cuts).is_file():
-        raise OptionError(
-            f"--cuts {cuts}: no such file; give auto, none or a file of frame numbers"
-        )
     return values
 
 
@@ -81,8 +75,4 @@ def fill(cls: type[Part], values: Mapping[str, Any]) -> Part:
 
 def frame_range(given: Mapping[str, Any]) -> FrameRange:
     """The range that `--frames`, `--start` and `--end` describe together."""
-    frames = FrameRange.parse(given["frames"]) if "frames" in given else FrameRange()
-    start, end = (
-        parse_time(given[name], f"--{name}") if name in given else None for name in ("start", "end")
-    )
-    return frames.between(start, end)
+    return FrameRange.parse(given.get("frames", "0-"), given.get("start"), given.get("end"))

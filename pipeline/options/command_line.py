@@ -2,16 +2,13 @@
 
 import argparse
 import reprlib
-from argparse import ArgumentTypeError
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import MISSING, Field, dataclass, fields, is_dataclass
 from fractions import Fraction
 from functools import cache, partial
-from itertools import chain
 from typing import Any
 
 from pipeline.options.look import Look
-from pipeline.options.members import written
 from pipeline.options.output import Output
 from pipeline.options.run import Run
 from pipeline.options.solve_options import SolveOptions
@@ -19,17 +16,10 @@ from pipeline.options.values import kind_of, read_value
 from warp_kernels.errors import OptionError
 from warp_kernels.registry import Registry
 
-HEADINGS = {
-    "range": "which frames",
-    "triangles": "triangles",
-    "motion": "motion",
-    "look": "look",
-    "time": "change over time",
-    "output": "output file",
-    "run": "run",
-    "processes": "processes",
-}
-"""Groups of the help, in order, and their titles."""
+GROUPS = ("range", "triangles", "motion", "look", "time", "output", "run", "processes")
+"""Groups of the help, in order."""
+_TITLES = {"range": "which frames", "time": "change over time", "output": "output file"}
+"""Headings of those whose own name would not do."""
 
 _PARTS = {Run: "run", SolveOptions: "triangles", Look: "look", Output: "output"}
 """The dataclasses that together are a job, and the groups of fields that name none."""
@@ -47,7 +37,7 @@ class Option:
     dest: str
     """Name of the field that takes its value."""
     group: str
-    """Key of its heading in `HEADINGS`."""
+    """One of `GROUPS`."""
     kind: str
     """Type of the field, such as `int`; `bool` is a switch, which stands alone."""
     help: str
@@ -85,19 +75,19 @@ class Option:
         return [self._single(entry, what, sign) for entry in entries]
 
     def _single(self, given: object, what: str, sign: str) -> object:
-        is_plain = isinstance(given, str | int | float | Fraction)
-        if not is_plain or isinstance(given, bool) != self.is_switch:
-            form = f"a number or a text in quotes, as {self.metavar}"
-            form = "true or false" if self.is_switch else form
-            raise OptionError(f"{what}{sign}{' '.join(reprlib.repr(given).split())}: write {form}")
+        shown = f"{what}{sign}{' '.join(reprlib.repr(given).split())}"
         if self.is_switch:
+            if not isinstance(given, bool):
+                raise OptionError(f"{shown}: write true or false")
             return given != self.default
+        if isinstance(given, bool) or not isinstance(given, str | int | float | Fraction):
+            raise OptionError(f"{shown}: write a number or a text in quotes, as {self.metavar}")
         try:
             result = read_value(self.kind, str(given))
-        except ArgumentTypeError as error:
+        except argparse.ArgumentTypeError as error:
             raise OptionError(f"{what}: {error}") from error
         if self.choices and result not in self.choices:
-            raise OptionError(f"{what}{sign}{given!r}: choose from {', '.join(self.choices)}")
+            raise OptionError(f"{shown}: choose from {', '.join(self.choices)}")
         return result
 
 
@@ -111,16 +101,13 @@ RANGE_OPTIONS = tuple(
 )
 """Options that together make a `FrameRange`."""
 
-_SOURCE_ONLY = ("track", "resume", "fps", "page", "stream")
-"""Options that mean nothing once there is a track."""
+_SOLVING = {"triangles", "motion", "processes", "track", "resume", "fps", "page", "stream", "seed"}
+"""Groups and options that mean nothing once there is a track."""
 
 COMMAND_OPTIONS: dict[str, Callable[[Option], bool]] = {
     "animate": lambda o: True,
     "solve": lambda o: o.group not in ("look", "output") or o.dest in ("overwrite", "resume"),
-    "render": lambda o: (
-        (o.group in ("range", "look", "time", "output") and o.dest not in _SOURCE_ONLY)
-        or o.dest in ("device", "threads")
-    ),
+    "render": lambda o: not _SOLVING & {o.group, o.dest},
     "preview": lambda o: o.dest not in ("track", "resume", "jobs"),
     "plan": lambda o: o.group == "range" or o.dest == "cuts",
     "measure": lambda o: o in RANGE_OPTIONS,
@@ -132,44 +119,23 @@ COMMAND_OPTIONS: dict[str, Callable[[Option], bool]] = {
 @cache
 def job_options() -> tuple[Option, ...]:
     """All options that describe a job."""
-    parts = (_options_of(part, group) for part, group in _PARTS.items())
-    return (*RANGE_OPTIONS, *chain.from_iterable(parts))
+    found = (option for part in _PARTS.items() for option in _options_of(*part))
+    return (*RANGE_OPTIONS, *found)
 
 
 def add_job_options(parser: argparse.ArgumentParser, command: str) -> None:
     """Give a parser the options of a command, in groups; what is not given is absent later."""
-    for key, title in HEADINGS.items():
-        wanted = [o for o in job_options() if o.group == key and COMMAND_OPTIONS[command](o)]
-        if wanted:
-            group = parser.add_argument_group(title)
-            sizes = group.add_mutually_exclusive_group() if key == "look" else group
-            for option in wanted:
-                _add(sizes if option.dest in EXCLUSIVE else group, option)
-
-
-def commands_with(flag: str) -> list[str]:
-    """Commands that have an option of a job, by its name; `preview` has those of `animate`."""
-    found = [option for option in job_options() if option.flag == flag]
-    owners = [name for name, has in COMMAND_OPTIONS.items() if any(map(has, found))]
-    return [name for name in owners if name not in ("preview", "timeline")]
-
-
-def registry_help() -> str:
-    """A paragraph that lists the members of every registry, and the parameters of its own."""
-    lines = ["members and their parameters (NAME or NAME:KEY=VALUE,KEY=VALUE):"]
-    for option in job_options():
-        if option.registry is not None:
-            own = option.registry.own.items()
-            lines += [f"  --{option.flag} {written(name, cls)}" for name, cls in own]
-            lines += [f"  --{option.flag} {name} (installed)" for name in option.registry.added]
-    return "\n".join(lines)
+    groups = {name: parser.add_argument_group(_TITLES.get(name, name)) for name in GROUPS}
+    sizes = groups["look"].add_mutually_exclusive_group()
+    wanted = filter(COMMAND_OPTIONS[command], job_options())
+    for option in sorted(wanted, key=lambda option: GROUPS.index(option.group)):
+        _add(sizes if option.dest in EXCLUSIVE else groups[option.group], option)
 
 
 def with_preset(given: Mapping[str, object], preset: Mapping[str, object]) -> dict[str, object]:
     """Values of a preset, replaced by what the command line gives; both by field name."""
-    decided = any(name in given for name in EXCLUSIVE)
-    kept = {k: v for k, v in preset.items() if not (decided and k in EXCLUSIVE)}
-    return {**kept, **given}
+    beaten = EXCLUSIVE if any(name in given for name in EXCLUSIVE) else ()
+    return {**{key: preset[key] for key in preset if key not in beaten}, **given}
 
 
 def _add(group: argparse._ActionsContainer, option: Option) -> None:
@@ -197,14 +163,14 @@ def _options_of(cls: Any, group: str) -> Iterator[Option]:
 def _option(field: Field[Any], group: str) -> Option:
     """What the metadata of a field say, see `pipeline.options.job`, and what they leave open."""
     said, kind, default = field.metadata, kind_of(field), field.default
+    registry, choices = said.get("registry"), said.get("choices")
     if default is MISSING:
         default = said["registry"].name_of(field.default_factory)
     flag, text = said.get("flag", field.name.replace("_", "-")), said["help"]
-    if kind != "bool" and default not in (None, ()):
-        text += f" (default: {default:g})" if kind == "float" else f" (default: {default})"
-    elif kind == "bool" and default:
+    if kind == "bool" and default:
         flag, text = f"no-{flag}", f"do not {text}"
+    elif kind != "bool" and default not in (None, ()):
+        text += f" (default: {default:g})" if kind == "float" else f" (default: {default})"
     usual = {"int": "N", "float": "X"}.get(kind, field.name.split("_")[-1].upper())
-    shown = "|".join(said.get("registry", said.get("choices", ()))) or usual
-    named = said.get("choices"), said.get("registry")
-    return Option(flag, field.name, group, kind, text, said.get("metavar", shown), default, *named)
+    metavar = said.get("metavar", "|".join(registry or choices or [usual]))
+    return Option(flag, field.name, group, kind, text, metavar, default, choices, registry)

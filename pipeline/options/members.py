@@ -33,15 +33,15 @@ def parse_member(flag: str, text: str, registry: Mapping[str, type]) -> Any:
 
 def _values(name: str, rest: str, kinds: Mapping[str, str]) -> dict[str, Any]:
     """Values of what follows a name; the first may be a text or a file without its key."""
-    first = next(iter(kinds), None)
-    bare = first if first is not None and kinds[first] in NAMES else None
-    if bare is not None and Path(rest).is_file():
-        return {bare: read_value(kinds[bare], rest)}  # whatever signs its name holds
+    first = next(iter(kinds), "")
+    takes_bare = kinds.get(first) in NAMES
+    if takes_bare and Path(rest).is_file():
+        return {first: read_value(kinds[first], rest)}  # whatever signs its name holds
     values: dict[str, Any] = {}
     for number, item in enumerate(rest.split(",") if rest else []):
         key, equals, value = item.partition("=")
-        if number == 0 and bare is not None and not equals:
-            key, value = bare, item
+        if number == 0 and takes_bare and not equals:
+            key, value = first, item
         elif not (key and equals and value):
             raise OptionError(f"{item!r} is not KEY=VALUE; write name:key=value,...")
         key = key.strip().replace("-", "_")
@@ -58,11 +58,10 @@ def _no_member(text: str, registry: Mapping[str, type]) -> str:
     """What to say about a specification whose name is none."""
     name, _, rest = text.partition(":")
     owner, equals, value = name.partition("=")
-    if equals and owner in registry:
-        first = next(iter(parameters(registry[owner])), None)
-        if first is not None:
-            pairs = ",".join(filter(None, [f"{first.name}={value}", rest]))
-            return f"a parameter has its name after a colon; write {owner}:{pairs}"
+    known = parameters(registry[owner]) if equals and owner in registry else []
+    if known:
+        pairs = ",".join(filter(None, [f"{known[0].name}={value}", rest]))
+        return f"a parameter has its name after a colon; write {owner}:{pairs}"
     return f"no {name!r}; {nearest(name, registry)}"
 
 
@@ -87,9 +86,3 @@ def parameters(cls: Any) -> list[Field[Any]]:
     """What a member is made with: its own fields, then inherited ones, the nearest first."""
     order = [name for base in cls.__mro__ for name in inspect.get_annotations(base)]
     return sorted((f for f in fields(cls) if f.init), key=lambda field: order.index(field.name))
-
-
-def written(name: str, cls: Any) -> str:
-    """A member with its parameters and their defaults, as it would be given."""
-    values = (f"{p.name}={'FILE' if p.default is None else p.default}" for p in parameters(cls))
-    return ":".join(filter(None, [name, ",".join(values)]))

@@ -7,13 +7,11 @@ from pipeline.options.command_line import job_options
 from stages.media.text_file import read_text
 from warp_kernels.errors import OptionError
 
-SHIPPED = Path(__file__).parents[1] / "presets"
-"""Folder of the presets that are known by name alone."""
 
-
-def shipped_presets() -> list[str]:
-    """Names of the presets that come with the program."""
-    return sorted(path.stem for path in SHIPPED.glob("*.toml"))
+def shipped_presets() -> dict[str, Path]:
+    """The presets that come with the program, by name."""
+    found = (Path(__file__).parents[1] / "presets").glob("*.toml")
+    return {path.stem: path for path in sorted(found)}
 
 
 def read_preset(name: str) -> dict[str, object]:
@@ -22,13 +20,13 @@ def read_preset(name: str) -> dict[str, object]:
     Raises:
         OptionError: If it cannot be read, or holds anything that is not an option.
     """
-    path = SHIPPED / f"{name}.toml" if name in shipped_presets() else Path(name)
+    shipped = shipped_presets()
     try:
-        table = tomllib.loads(read_text(path))
+        table = tomllib.loads(read_text(shipped.get(name, Path(name))))
     except OSError as error:
         raise OptionError(
             f"--preset {name}: cannot be read ({str(error.strerror).lower()}); give a TOML file "
-            f"or one of {', '.join(shipped_presets())}"
+            f"or one of {', '.join(shipped)}"
         ) from error
     except ValueError as error:
         raise OptionError(f"--preset {name}: not a TOML file ({error}); mend it") from error

@@ -99,6 +99,10 @@ class SolveOptions:
     def __post_init__(self) -> None:
         if self.seed < 0:
             raise OptionError(f"--seed {self.seed}: must be 0 or more")
+        if self.cuts not in ("auto", "none") and not Path(self.cuts).is_file():
+            raise OptionError(
+                f"--cuts {self.cuts}: no such file; give auto, none or a file of frame numbers"
+            )
         resolved(self.focus, self.weights)
 
     @property

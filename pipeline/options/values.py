@@ -11,31 +11,22 @@ from pathlib import Path
 from typing import Any
 
 from stages.look.output_size import FORM, parse_size
-
-
-def _finite(text: str) -> float:
-    number = float(text)
-    if not math.isfinite(number):
-        raise ValueError(text)
-    return number
-
-
-def _grey(name: str) -> Any:
-    from stages.masks.gray import read_gray
-
-    return read_gray(name)
-
+from warp_kernels.registry import imported
 
 _SWITCHES = {"true": True, "yes": True, "1": True, "false": False, "no": False, "0": False}
 _RULES: dict[str, tuple[Callable[[str], Any], str, str]] = {
     "bool": (lambda text: _SWITCHES[text.lower()], "true or false", "true or false"),
     "int": (int, "a whole number", "one such as 12"),
-    "float": (_finite, "a number", "one such as 0.5"),
+    "float": (float, "a number", "one such as 0.5"),
     "Fraction": (Fraction, "a rate", "one such as 24 or 30000/1001"),
     "tuple[int, int]": (parse_size, "a size", FORM),
 }
 """How values of a type are read, what they are, and how one is written."""
-NAMES: dict[str, Callable[[str], Any]] = {"str": str, "Path": Path, "ndarray": _grey}
+NAMES: dict[str, Callable[[str], Any]] = {
+    "str": str,
+    "Path": Path,
+    "ndarray": lambda name: imported("stages.masks.gray:read_gray")(name),
+}
 """Types whose values are any text, among them names of files."""
 
 
@@ -57,13 +48,15 @@ def read_value(kind: str, text: str, parameter: str | None = None) -> Any:
         return NAMES.get(kind, str)(text)
     read, noun, form = _RULES[kind]
     try:
-        return read(text)
+        value = read(text)
+        if isinstance(value, float) and not math.isfinite(value):
+            raise ValueError(text)
     except (ValueError, KeyError, ZeroDivisionError):
-        told = f"{parameter}={text}: write {noun}"
-        told = told if parameter else f"{text!r} is not {noun}; write {form}"
-        raise ArgumentTypeError(told) from None
+        if parameter:
+            raise ArgumentTypeError(f"{parameter}={text}: write {noun}") from None
+        raise ArgumentTypeError(f"{text!r} is not {noun}; write {form}") from None
+    return value
 
 
 text_value: Callable[[str], str] = partial(read_value, "str")
 whole_number: Callable[[str], int] = partial(read_value, "int")
-size: Callable[[str], tuple[int, int]] = partial(read_value, "tuple[int, int]")

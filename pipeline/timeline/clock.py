@@ -15,6 +15,8 @@ USUAL_RATE = Fraction(25)
 _NEAR = Fraction(1, 4)
 """A frame that is off its place at an even rate by no more than this part of a frame is shown at
 that place: containers round times."""
+NEAR_BAR = 0.05
+"""A bar is near to a part of the film if it is no further away than this part of it."""
 NO_BEAT = "nothing is heard that has beats; give --audio or --beats FILE, or write bpm = 120 on top"
 """What to say where beats are counted and there are none."""
 
@@ -104,12 +106,11 @@ class Clock:
         return amount
 
     def _nearest_bar(self, time: float) -> float:
-        """The beginning of a bar [s], within the film."""
-        bar = round(float(self.beats.bar_at(time)))
-        begin = self.beats.time_of_bar(bar)
-        if self.end is not None and self.frame_at(begin) >= self.frame_at(self.end):
-            begin = self.beats.time_of_bar(bar - 1)
-        return max(begin, 0.0)
+        """The bar that is nearest to a time [s], or the beat, or itself if none is near."""
+        bars = self.beats.time_of_bar(round(float(self.beats.bar_at(time))))
+        beats = float(self.beats.time_of_beat(round(float(self.beats.beat_at(time)))))
+        near = NEAR_BAR * (self.end or 0.0)
+        return next((one for one in (bars, beats) if abs(one - time) <= near), time)
 
     def later(self, time: float, span: Span) -> float:
         """A length of time after another time [s].

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from fractions import Fraction
 from pathlib import Path
 
 from pipeline.options.look import Look
@@ -47,6 +48,8 @@ class Transition:
     """`cut`, `fade`, `wipe`, `scatter` or `grow`."""
     span: Span
     """How long it takes, from the moment at which the section begins."""
+    most: Fraction | None = None
+    """The part of the film that it takes at most."""
     direction: str = ""
     """Of a wipe: `left`, `right`, `up` or `down`."""
 

@@ -43,7 +43,8 @@ class Span:
     """In what."""
 
     def __str__(self) -> str:
-        return f"{float(self.amount):g} {self.unit.value}"
+        unit = self.unit.value.removesuffix("s") if self.amount == 1 else self.unit.value
+        return f"{float(self.amount):g} {unit or self.unit.value}"
 
 
 @dataclass(frozen=True)
@@ -59,7 +60,7 @@ class When:
     share: Fraction | None = None
     """The part of the film after which it is, in place of a length of time."""
     is_on_bar: bool = False
-    """Whether it is the beginning of the bar that is nearest to that."""
+    """Whether it is a bar or a beat near to that, if there is one."""
 
     @property
     def needs_beats(self) -> bool:

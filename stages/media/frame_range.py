@@ -1,7 +1,7 @@
 """Which frames of a source are wanted."""
 
 import re
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 
 from warp_kernels.errors import OptionError
@@ -50,14 +50,16 @@ class FrameRange:
             )
 
     @classmethod
-    def parse(cls, text: str) -> "FrameRange":
-        """Read `A-B`, `A`, `A-` or `A-BxS`; both ends are included.
+    def parse(cls, text: str, start: str | None = None, end: str | None = None) -> "FrameRange":
+        """Read `A-B`, `A`, `A-` or `A-BxS`, both ends included, and times that bound it as well.
 
         Args:
             text: What the user wrote.
+            start: Earliest time as the user wrote it, or None.
+            end: Latest time, or None.
 
         Raises:
-            OptionError: If the text has another form.
+            OptionError: If a text has another form, or the end comes before the start.
         """
         if ":" in text:
             raise OptionError(
@@ -69,19 +71,11 @@ class FrameRange:
             raise OptionError(f"frames {text!r}: not a range; write A-B, A, A- or A-BxS")
         first = int(match["first"])
         last = first if match["dash"] is None else int(match["last"]) if match["last"] else None
-        return cls(first=first, last=last, step=int(match["step"] or 1))
-
-    def between(self, start_time: Fraction | None, end_time: Fraction | None) -> "FrameRange":
-        """The same range, bounded by times as well.
-
-        Args:
-            start_time: Earliest time [s from the first frame], or None.
-            end_time: Latest time [s from the first frame], or None.
-
-        Raises:
-            OptionError: If the end comes before the start.
-        """
-        return replace(self, start_time=start_time, end_time=end_time)
+        times = (
+            None if time is None else parse_time(time, name)
+            for time, name in ((start, "--start"), (end, "--end"))
+        )
+        return cls(first, last, int(match["step"] or 1), *times)
 
     @property
     def is_whole(self) -> bool:
