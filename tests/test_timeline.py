@@ -1,7 +1,9 @@
 """Timelines: times, keys and expressions; what is drawn at a frame, whatever range it is in."""
 
+import re
 from collections.abc import Mapping
 from fractions import Fraction
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,8 +16,9 @@ from pipeline.timeline.keyframes import Keyed, parse_keys
 from pipeline.timeline.mixing import mixed
 from pipeline.timeline.place import Place
 from pipeline.timeline.show import Show
-from pipeline.timeline.show_file import parse_timeline
+from pipeline.timeline.show_file import parse_timeline, read_timeline
 from pipeline.timeline.signals import Signals
+from pipeline.timeline.timeline import shipped_timelines
 from pipeline.timeline.times import parse_when
 from stages.hearing.heard import Heard
 from warp_kernels.errors import OptionError
@@ -253,3 +256,24 @@ def test_mistakes_are_told_with_their_line(wrong: str, right: str, told: str) ->
     assert wrong in TWO
     with pytest.raises(OptionError, match=r"^show\.toml" + told):
         show_of_text(TWO.replace(wrong, right, 1))
+
+
+def test_the_page_shows_what_can_be_read() -> None:
+    page = Path(__file__).parents[1] / "docs" / "timeline.md"
+    (example,) = re.findall(r"^```toml\n(.*?)^```", page.read_text("utf-8"), re.MULTILINE | re.S)
+    clock = Clock(Fraction(24), 0, 24 * 90, Heard.steady(90.0, 120.0))
+    show = show_of_text(example, clock=clock)
+    assert [placed.section.name for placed in show.sections] == [
+        *("verse", "chorus", "section 3", "between")
+    ]
+    assert show.mesh_at(0, "triangles") == 60
+
+
+@pytest.mark.parametrize("name", shipped_timelines())
+@pytest.mark.parametrize("seconds", [1, 3, 20, 240])
+def test_shipped_timelines_fit_films_of_any_length(name: str, seconds: int) -> None:
+    timeline = read_timeline(name, Look())
+    clock = Clock(Fraction(25), 0, 25 * seconds, Heard.steady(seconds, timeline.bpm or 120))
+    show = Show(timeline, clock, (Look(), *(one.look for one in timeline.sections)))
+    show.check(0, 25 * min(seconds, 20) - 1)
+    assert len(show.sections) == len(timeline.sections)

@@ -37,7 +37,7 @@ ONE = FrameRange(0, 0)
 
 
 @dataclass(frozen=True, eq=False)
-class Drawn:
+class OverTime:
     """A target of curves over the whole film."""
 
     name: str
@@ -98,7 +98,7 @@ def _end_of(show: Show, number: int) -> float:
     return show.clock.end or show.clock.time_of_frame(show.sections[number].first) + 1.0
 
 
-def _curves(show: Show, first: int, last: int) -> Iterator[Drawn]:
+def _curves(show: Show, first: int, last: int) -> Iterator[OverTime]:
     """Everything that changes, at even places of the film."""
     frames = np.linspace(first, last, PLACES).round().astype(int)
     sections = [
@@ -111,7 +111,7 @@ def _curves(show: Show, first: int, last: int) -> Iterator[Drawn]:
             _value(show, show.sections[number], int(frame), name)
             for frame, number in zip(frames, sections, strict=True)
         ]
-        yield Drawn(name, values)
+        yield OverTime(name, values)
 
 
 def _value(show: Show, placed: Placed, frame: int, name: str) -> Any:
@@ -121,7 +121,7 @@ def _value(show: Show, placed: Placed, frame: int, name: str) -> Any:
     return placed.section.mesh.get(name)
 
 
-def _as_table(show: Show, curves: list[Drawn], source: Path) -> str:
+def _as_table(show: Show, curves: list[OverTime], source: Path) -> str:
     """For people."""
     clock = show.clock
     length = "unknown" if clock.end is None else clock.name_of(clock.end).split(" bar")[0]
@@ -149,7 +149,7 @@ def _stack(placed: Placed) -> str:
     return " + ".join(type(style).__name__.lower() for style in placed.look.styles)
 
 
-def _as_json(show: Show, curves: list[Drawn]) -> str:
+def _as_json(show: Show, curves: list[OverTime]) -> str:
     """For programs."""
     sections = [
         {
@@ -169,7 +169,7 @@ def _as_json(show: Show, curves: list[Drawn]) -> str:
 
 def _draw(
     show: Show,
-    curves: list[Drawn],
+    curves: list[OverTime],
     info: MediaInfo,
     read: ReadOptions,
     path: Path,
@@ -198,7 +198,7 @@ def _draw(
         out.write(strip, 0, Fraction(1), 0)
 
 
-def _graph(curve: Drawn) -> Graph:
+def _graph(curve: OverTime) -> Graph:
     """A curve as it is drawn."""
     numbers = curve.numbers
     if numbers is not None:
