@@ -136,7 +136,7 @@ def _clock(plain: str) -> When | None:
         return None
     minutes, seconds = int(match[2]), Fraction(match[3])
     if seconds >= 60 or (match[1] and minutes >= 60):
-        raise ValueError(f"{plain!r}: minutes and seconds of a clock go up to 59")
+        raise ValueError(f"{plain!r}: minutes and seconds of a clock go up to 59; write 1:30")
     total = int(match[1] or 0) * 3600 + minutes * 60 + seconds
     return When(Span(Fraction(total), Unit.SECONDS))
 
@@ -147,7 +147,7 @@ def _bar(plain: str) -> When | None:
         return None
     bar, beat = int(match[1]), Fraction(match[2] or 1)
     if bar < 1 or beat < 1:
-        raise ValueError(f"{plain!r}: bars and the beats of a bar count from 1")
+        raise ValueError(f"{plain!r}: bars and the beats of a bar count from 1; write bar 1")
     return When(Span(Fraction(bar - 1), Unit.BARS), beat - 1)
 
 
@@ -157,7 +157,7 @@ def _share(plain: str) -> When | None:
         return None
     share = Fraction(match[2]) / 100
     if share > 1:
-        raise ValueError(f"{plain!r}: the film ends at 100%")
+        raise ValueError(f"{plain!r}: the film ends at 100%; write end")
     return When(START.span, share=share, is_on_bar=bool(match[1]))
 
 
