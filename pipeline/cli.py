@@ -183,6 +183,17 @@ def run_styles(arguments: argparse.Namespace) -> None:
     draw_sheet(arguments.picture, arguments.sheet, triangles=triangles, overwrite=overwrite)
 
 
+def run_timeline(arguments: argparse.Namespace) -> None:
+    """Print what a timeline does when, and draw it.
+
+    Args:
+        arguments: What the user gave.
+    """
+    from pipeline.commands.timeline_check import check_timeline
+
+    print(check_timeline(arguments))
+
+
 def run_completion(arguments: argparse.Namespace) -> None:
     """Print the script by which a shell completes the command line.
 
@@ -230,6 +241,7 @@ COMMANDS: dict[str, Command] = {
     "info": run_info,
     "measure": run_measure,
     "styles": run_styles,
+    "timeline": run_timeline,
     "completion": run_completion,
     "help": run_help,
 }

@@ -44,6 +44,10 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
         "styles hatching",
         "styles photo.jpg --sheet sheet.png",
     ),
+    "timeline": (
+        "timeline show.toml --check clip.mp4",
+        "timeline pulse --check clip.mp4 -o strip.png",
+    ),
     "completion": (
         "completion bash > ~/.local/share/bash-completion/completions/trimotion",
         "completion zsh > ~/.zfunc/_trimotion",

@@ -1,16 +1,13 @@
 """The grammar of the command line: subcommands, their arguments, their help."""
 
 import argparse
-import difflib
 import re
-from collections.abc import Iterable, Sequence
-from pathlib import Path
 from typing import Any, NoReturn
 
 from pipeline.commands.examples import ABOUT_ALL, EXAMPLES, shown
 from pipeline.commands.style_list import registry_help
-from pipeline.options.command_line import COMMAND_OPTIONS, add_job_options, job_options
-from pipeline.options.nearest import nearest
+from pipeline.commands.unknown import no_command, unknown_arguments
+from pipeline.options.command_line import add_job_options
 from pipeline.options.values import text_value, whole_number
 from pipeline.progress import CHOICES
 
@@ -27,6 +24,7 @@ commands:
   info FILE                  what a file is: a source or a mesh track
   measure SOURCE OUTPUT      how close an output is to its source, and how coherent
   styles [NAME]              all styles and their parameters, or one; --sheet draws them
+  timeline SHOW.toml --check CLIP      what a timeline does when, without solving
   completion bash|zsh|fish   a script by which a shell completes all of this
   help [COMMAND]             this text, or the options of a command
 
@@ -40,9 +38,6 @@ trimotion styles lists every style with its parameters, trimotion styles NAME th
 """
 
 
-SEVERAL = ("animate", "solve", "render")
-"""Commands that take several inputs."""
-
 _CHOICE = re.compile(r"argument COMMAND: invalid choice: '(.*)' \(choose from ")
 
 
@@ -53,7 +48,7 @@ class OneLineParser(argparse.ArgumentParser):
         """Print a mistake and leave with exit code 2."""
         found = _CHOICE.match(message)
         if found:
-            message = _no_command(found[1], self.commands())
+            message = no_command(found[1], self.commands())
         line = " ".join(message.removeprefix("argument ").split())
         self.exit(2, f"trimotion: error: {line}; see {self.prog} --help\n")
 
@@ -62,7 +57,7 @@ class OneLineParser(argparse.ArgumentParser):
         found, unknown = super().parse_known_args(args, namespace)
         command = self.get_default("command")
         if unknown and command:
-            self.error(_unknown(unknown, list(self._option_string_actions), command))
+            self.error(unknown_arguments(unknown, list(self._option_string_actions), command))
         return found, unknown
 
     def options(self) -> list[argparse.Action]:
@@ -111,6 +106,7 @@ def build_parser() -> OneLineParser:
     _add_info(commands)
     _add_measure(commands)
     _add_styles(commands)
+    _add_timeline(commands)
     _add_completion(commands)
     _add_help(commands)
     return parser
@@ -315,6 +311,25 @@ def _add_styles(commands: Any) -> None:
     parser.add_argument("--json", action="store_true", help="print JSON")
 
 
+def _add_timeline(commands: Any) -> None:
+    parser = _command(
+        commands,
+        "timeline",
+        "Print what a timeline does when, and draw it above the film; nothing is solved.",
+        "trimotion timeline SHOW.toml|NAME --check CLIP [-o STRIP.png]",
+    )
+    parser.add_argument("show", metavar="SHOW.toml|NAME", type=text_value, help="the timeline")
+    parser.add_argument(
+        "--check", dest="source", metavar="CLIP", type=text_value, required=True, help="the film"
+    )
+    parser.add_argument(
+        "-o", "--output", metavar="STRIP.png", type=text_value, help="write a picture of it"
+    )
+    parser.add_argument("--overwrite", action="store_true", help="replace an existing picture")
+    parser.add_argument("--json", action="store_true", help="print JSON")
+    add_job_options(parser, "timeline")
+
+
 def _add_completion(commands: Any) -> None:
     parser = _command(
         commands,
@@ -357,38 +372,3 @@ def _command(
     )
     parser.set_defaults(command=name)
     return parser
-
-
-def _no_command(word: str, known: Iterable[str]) -> str:
-    """What to say about a first word that is no command."""
-    if Path(word).suffix or Path(word).exists():
-        return f"{word!r}: a command comes first, as in trimotion animate {word} -o OUTPUT"
-    return f"{word!r}: no such command; {nearest(word, known)}"
-
-
-def _unknown(arguments: Sequence[str], known: Sequence[str], command: str) -> str:
-    """What to say about arguments that no option takes."""
-    first = arguments[0].split("=")[0]
-    if not first.startswith("-"):
-        apart = "; several inputs stand side by side" if command in SEVERAL else ""
-        return f"{arguments[0]!r}: unknown argument{apart}"
-    named = [option for option in job_options() if option.flag == first.lstrip("-")]
-    owners = [name for name, has in COMMAND_OPTIONS.items() if any(map(has, named))]
-    owners = [name for name in owners if name != "preview"]  # it has those of animate
-    if owners:
-        some = ", ".join(owners[:-1])
-        owned = f"{some} and {owners[-1]}" if some else owners[-1]
-        return f"{first}: is an option of {owned}, not of {command}{_why(command, first)}"
-    begun = [option for option in known if option.startswith(first)]
-    similar = begun or difflib.get_close_matches(first, known, n=1)
-    hint = f"; did you mean {similar[0]}?" if similar else ""
-    return f"{arguments[0]!r}: unknown option{hint}"
-
-
-def _why(command: str, flag: str) -> str:
-    """What to do with an option that others have and a command has not."""
-    if command == "render":
-        return f", which draws what was solved; solve again with {flag}"
-    if command == "solve":
-        return f", which draws nothing; give {flag} to render"
-    return ""

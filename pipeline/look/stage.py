@@ -12,7 +12,8 @@ from pipeline.options.look import Look
 from pipeline.timeline.show import Instant, Setting, Show
 from pipeline.timeline.staging import show_of
 from stages.look.framing import Framing, framed
-from stages.look.transitions import faded, thinned, wiped, with_alpha
+from stages.look.transitions import apart, faded, thinned, through, wiped, with_alpha
+from stages.look.veil import WAITING, Curtain
 from stages.media import MediaInfo
 from warp_kernels.color_model import ColorModel
 from warp_kernels.device.device import Device
@@ -67,6 +68,10 @@ class Stage:
         self._wardrobe, self._framing, self._model, self._show = wardrobe, framing, model, show
         self._steady = Instant(Setting(0, look))
         self._is_alpha = False
+        self._curtains: dict[str, Curtain] = {}
+        for kind in () if show is None else show.transitions:
+            if kind in WAITING:
+                self._curtain(kind)
         scenes = [self._steady.scene] if show is None else show.foreseen(*frames)
         for scene in scenes:
             transparent = wardrobe.prepare(scene.look).is_transparent
@@ -103,10 +108,39 @@ class Stage:
         pixels = self._drawn(moment.scene, view)
         if moment.before is None or moment.transition is None:
             return pixels
-        before = self._drawn(moment.before, view)
-        if moment.transition.kind == "wipe":
+        before, kind = self._drawn(moment.before, view), moment.transition.kind
+        if kind == "wipe":
             return wiped(before, pixels, moment.share, moment.transition.direction)
-        return faded(before, pixels, moment.share)
+        if kind == "fade":
+            return faded(before, pixels, moment.share)
+        weights = self._curtain(kind).weights(view.snapshot, moment.share)
+        one, other = (self._framed_mask(part) for part in weights)
+        if kind == "scatter":
+            return through(before, pixels, other)
+        return apart(before, pixels, (one, other), self._ground(moment))
+
+    def _ground(self, moment: Instant) -> tuple[float, float, float]:
+        """What is seen between triangles that shrink away."""
+        assert moment.before is not None
+        grounds = [one.look.backdrop(self._model) for one in (moment.before, moment.scene)]
+        return grounds[0] or grounds[1] or BLACK
+
+    def _curtain(self, kind: str) -> Curtain:
+        """What draws the masks of a transition; made once, before the first frame if foreseen."""
+        if kind not in self._curtains:
+            size = self._framing.picture
+            self._curtains[kind] = self._wardrobe.curtain(kind, size)
+        return self._curtains[kind]
+
+    def _framed_mask(self, mask: np.ndarray) -> np.ndarray:
+        """A mask on the canvas: bars change with the picture's edges."""
+        if self._framing.is_plain:
+            return mask
+        across, down = self._framing.offset
+        width, height = self._framing.canvas
+        rows = np.clip(np.arange(height) - down, 0, mask.shape[0] - 1)
+        columns = np.clip(np.arange(width) - across, 0, mask.shape[1] - 1)
+        return mask[np.ix_(rows, columns)]
 
     def _drawn(self, scene: Setting, view: Posed) -> np.ndarray:
         """One scene on its canvas."""

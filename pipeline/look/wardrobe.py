@@ -8,6 +8,7 @@ import numpy as np
 
 from pipeline.options.look import Look
 from stages.look.fading import Fading
+from stages.look.veil import Curtain
 from stages.render import Renderer
 from stages.snapshot import Snapshot
 from warp_kernels.color_model import ColorModel
@@ -62,6 +63,15 @@ class Wardrobe:
         self._followed = len(look.followed)
         self._renderers: dict[Any, Renderer] = {}
         self._dressed: dict[int, Look] = {}
+
+    def curtain(self, kind: str, size: tuple[int, int]) -> Curtain:
+        """What draws the masks of a kind of transition.
+
+        Args:
+            kind: `scatter` or `grow`.
+            size: Width and height of what is drawn [px].
+        """
+        return Curtain(self._device, self._picture, size, kind)
 
     def prepare(self, look: Look) -> Renderer:
         """The renderer for a look, with its parameters; made if there is none of its kind.

@@ -111,6 +111,7 @@ COMMAND_OPTIONS: dict[str, Callable[[Option], bool]] = {
     "preview": lambda o: o.dest not in ("track", "resume", "jobs"),
     "plan": lambda o: o.group == "range" or o.dest == "cuts",
     "measure": lambda o: o in RANGE_OPTIONS,
+    "timeline": lambda o: o.dest in ("styles", "regions", "background", "fps"),
 }
 """Which options a command has."""
 

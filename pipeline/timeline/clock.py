@@ -15,7 +15,9 @@ USUAL_RATE = Fraction(25)
 _NEAR = Fraction(1, 4)
 """A frame that is off its place at an even rate by no more than this part of a frame is shown at
 that place: containers round times."""
-NO_BEAT = "nothing is heard that has beats; give --audio or --beats FILE, or write bpm = 120 on top"
+NEAR_BAR = 0.05
+"""A bar is near to a part of the film if it is no further away than this part of it."""
+NO_BEAT = 'nothing is heard that has beats; write beats = "FILE" or bpm = 120 on top'
 """What to say where beats are counted and there are none."""
 
 
@@ -87,10 +89,11 @@ class Clock:
         Raises:
             OptionError: If it counts beats and there are none, or the end is unknown.
         """
-        if when.is_end:
+        if when.share is not None:
             if self.end is None:
-                raise OptionError("end: the length of the source is unknown; write a time")
-            return self.end
+                raise OptionError("the length of the source is unknown; write seconds or bars")
+            time = float(when.share) * self.end
+            return self._nearest_bar(time) if when.is_on_bar else time
         if when.is_relative:
             return self.later(before, when.span)
         amount = float(when.span.amount)
@@ -101,6 +104,13 @@ class Clock:
         if when.span.unit is Unit.FRAMES:
             return float((when.span.amount - self.first) / self.rate)
         return amount
+
+    def _nearest_bar(self, time: float) -> float:
+        """The bar that is nearest to a time [s], or the beat, or itself if none is near."""
+        bars = self.beats.time_of_bar(round(float(self.beats.bar_at(time))))
+        beats = float(self.beats.time_of_beat(round(float(self.beats.beat_at(time)))))
+        near = NEAR_BAR * (self.end or 0.0)
+        return next((one for one in (bars, beats) if abs(one - time) <= near), time)
 
     def later(self, time: float, span: Span) -> float:
         """A length of time after another time [s].

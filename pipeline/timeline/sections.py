@@ -1,7 +1,9 @@
 """Read sections: when they begin, how they look, how one becomes the next."""
 
+import re
 from collections.abc import Mapping
 from dataclasses import replace
+from fractions import Fraction
 from functools import cache
 from typing import Any
 
@@ -141,9 +143,10 @@ def parse_transition(text: Any) -> Transition:
     Raises:
         ValueError: If it is none; the message says what is.
     """
-    if not isinstance(text, str) or not text.strip():
+    if not isinstance(text, str) or not text.partition(",")[0].strip():
         raise ValueError(f"{text!r} is none; {FORM}")
-    words = text.lower().split()
+    plain, _, bound = text.partition(",")
+    words = plain.lower().split()
     kind = words.pop(0)
     if kind not in KINDS:
         raise ValueError(f"no {kind!r}; {nearest(kind, KINDS)}")
@@ -156,7 +159,16 @@ def parse_transition(text: Any) -> Transition:
         if words:
             raise ValueError(f"{text!r}: a cut takes no time; write cut, or fade {' '.join(words)}")
         return CUT
+    most = _bound(bound.strip().lower()) if bound else None
     span = parse_span(" ".join(words) or "1s")
     if span.amount == 0:
         raise ValueError(f"{text!r} takes no time; write cut")
-    return Transition(kind, span, direction)
+    return Transition(kind, span, most, direction)
+
+
+def _bound(text: str) -> Fraction:
+    """The part of the film that a transition takes at most."""
+    match = re.fullmatch(r"(\d+(?:\.\d+)?) *% at most", text)
+    if match is None or not 0 < Fraction(match[1]) <= 100:
+        raise ValueError(f"{text!r} bounds nothing; write fade 1 bar, 10% at most")
+    return Fraction(match[1]) / 100

@@ -221,6 +221,11 @@ class Show:
         return found or [self._scene(0, first, self.clock.time_of_frame(first), first)]
 
     @property
+    def transitions(self) -> set[str]:
+        """Kinds of transitions that there are."""
+        return {one.section.transition.kind for one in self.sections if one.ends > one.first}
+
+    @property
     def notes(self) -> list[str]:
         """Choices that were made, one sentence each."""
         return []
@@ -264,7 +269,11 @@ class Show:
         ends = first
         if number and section.transition.kind != "cut":
             try:
-                ends = clock.frame_at(clock.later(begin, section.transition.span))
+                over = clock.later(begin, section.transition.span)
+                most = section.transition.most
+                if most is not None and clock.end is not None:
+                    over = min(over, begin + float(most) * clock.end)
+                ends = clock.frame_at(over)
             except OptionError as error:
                 raise section.place.error(error) from error
             if ends > clock.frame_at(end):

@@ -19,10 +19,12 @@ from pipeline.timeline.timeline import (
     shipped_timelines,
 )
 from pipeline.timeline.times import START
+from stages.hearing.beats_file import read_beats
+from stages.hearing.heard import Heard
 from stages.media.text_file import read_text
-from warp_kernels.errors import OptionError
+from warp_kernels.errors import OptionError, TrimotionError
 
-TOP = ("title", "bpm", "meter", "section", "curves")
+TOP = ("title", "beats", "bpm", "meter", "section", "curves")
 """What stands on top."""
 _AT = re.compile(r"\s*\(at line (\d+), column (\d+)\)")
 MOST_TEMPO = 1000.0
@@ -81,7 +83,8 @@ def parse_timeline(text: str, file: str, look: Look) -> Timeline:
     looks = [section.look for section in sections]
     curves = read_curves(tables.get("curves", {}), ("curves",), looks, places)
     bpm, meter = _tempo(tables, places)
-    return Timeline(file, tuple(sections), curves, bpm, meter)
+    beats = _beats(tables, places)
+    return Timeline(file, tuple(sections), curves, bpm, meter, beats)
 
 
 def _tables(text: str, file: str) -> dict[str, Any]:
@@ -97,6 +100,20 @@ def _tables(text: str, file: str) -> dict[str, Any]:
         raise place.error(
             f"no TOML ({reason[:1].lower()}{reason[1:]}); texts stand in quotes, lists in brackets"
         ) from error
+
+
+def _beats(tables: Mapping[str, Any], places: Places) -> Heard | None:
+    """The beats of a file that the timeline names; it lies where the timeline is, or here."""
+    name, place = tables.get("beats"), places.of((), "beats")
+    if name is None:
+        return None
+    if not isinstance(name, str) or not name:
+        raise place.error(f"beats = {name!r}: write the name of a file that trimotion reads")
+    beside = Path(places.file).parent / name
+    try:
+        return read_beats(beside if beside.is_file() else Path(name))
+    except TrimotionError as error:
+        raise place.error(error) from error
 
 
 def _tempo(tables: Mapping[str, Any], places: Places) -> tuple[float | None, int]:

@@ -161,5 +161,5 @@ class Signals:
     @cached_property
     def _heard(self) -> Heard:
         if self.clock.heard is None:
-            raise OptionError("nothing is heard; give --audio FILE or a clip with sound")
+            raise OptionError('nothing is heard; write beats = "FILE" on top')
         return self.clock.heard

@@ -73,6 +73,8 @@ def heard_for(timeline: Timeline, info: MediaInfo) -> Heard | None:
     """
     if not timeline.needs_sound:
         return None
+    if timeline.beats is not None:
+        return timeline.beats
     if timeline.bpm is not None:
         seconds = float(info.duration or 0)
         return Heard.steady(max(seconds, 1.0), timeline.bpm, timeline.meter)

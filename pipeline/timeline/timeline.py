@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from fractions import Fraction
 from pathlib import Path
 
 from pipeline.options.look import Look
@@ -10,6 +11,7 @@ from pipeline.timeline.keyframes import Key
 from pipeline.timeline.place import Place
 from pipeline.timeline.targets import MESH, Target
 from pipeline.timeline.times import START, Span, When
+from stages.hearing.heard import Heard
 
 TEMPLATES = Path(__file__).parent / "templates"
 """Folder of the timelines that are known by name alone."""
@@ -47,6 +49,8 @@ class Transition:
     """`cut`, `fade`, `wipe`, `scatter` or `grow`."""
     span: Span
     """How long it takes, from the moment at which the section begins."""
+    most: Fraction | None = None
+    """The part of the film that it takes at most."""
     direction: str = ""
     """Of a wipe: `left`, `right`, `up` or `down`."""
 
@@ -93,6 +97,8 @@ class Timeline:
     """The tempo where nothing is heard."""
     meter: int = 4
     """Beats of a bar where nothing is heard."""
+    beats: Heard | None = None
+    """What is heard, if the file names a file that says so."""
 
     @property
     def all_curves(self) -> list[Curve]:

@@ -1,4 +1,4 @@
-"""Times as people write them: `12.5s`, `1:02.5`, `f240`, `b32`, `bar 9.3`, `+4 bars`, `end`."""
+"""Times as people write them: `12.5s`, `1:02.5`, `f240`, `b32`, `bar 9.3`, `50%`, `+4 bars`."""
 
 import re
 from dataclasses import dataclass
@@ -11,8 +11,9 @@ _SPAN = re.compile(rf"{_NUMBER} *(ms|s|sec|seconds?|frames?|f|beats?|bars?)")
 _FRAME = re.compile(r"f(?:rame)? *(\d+)")
 _BEAT = re.compile(rf"b(?:eat)? *{_NUMBER}")
 _BAR = re.compile(r"bar *(\d+)(?:\.(\d+(?:\.\d+)?))?")
+_SHARE = re.compile(rf"(bar at )? *{_NUMBER} *%")
 
-FORM = "write 12.5s, 1:02.5, f240, b32, bar 9, bar 9.3, start, end, or +4 bars after another"
+FORM = "write 12.5s, 1:02.5, f240, b32, bar 9, bar 9.3, 50%, bar at 50%, start, end, or +4 bars"
 """How times are written, for messages."""
 SPAN_FORM = "write 2s, 250ms, 12 frames, 1 beat or 4 bars"
 """How spans of time are written, for messages."""
@@ -42,7 +43,8 @@ class Span:
     """In what."""
 
     def __str__(self) -> str:
-        return f"{float(self.amount):g} {self.unit.value}"
+        unit = self.unit.value.removesuffix("s") if self.amount == 1 else self.unit.value
+        return f"{float(self.amount):g} {unit or self.unit.value}"
 
 
 @dataclass(frozen=True)
@@ -55,13 +57,15 @@ class When:
     """Beats into the bar."""
     is_relative: bool = False
     """Whether it counts from the moment before it in the file."""
-    is_end: bool = False
-    """Whether it is the end of the film."""
+    share: Fraction | None = None
+    """The part of the film after which it is, in place of a length of time."""
+    is_on_bar: bool = False
+    """Whether it is a bar or a beat near to that, if there is one."""
 
     @property
     def needs_beats(self) -> bool:
         """Whether something must be heard to know when it is."""
-        return self.span.unit.needs_beats
+        return self.span.unit.needs_beats or self.is_on_bar
 
 
 START = When(Span(Fraction(0), Unit.SECONDS))
@@ -83,8 +87,8 @@ def parse_when(text: str) -> When:
     if plain in ("start", "0"):
         return START
     if plain == "end":
-        return When(START.span, is_end=True)
-    found = _clock(plain) or _bar(plain)
+        return When(START.span, share=Fraction(1))
+    found = _clock(plain) or _bar(plain) or _share(plain)
     if found is not None:
         return found
     for form, unit in ((_FRAME, Unit.FRAMES), (_BEAT, Unit.BEATS)):
@@ -132,7 +136,7 @@ def _clock(plain: str) -> When | None:
         return None
     minutes, seconds = int(match[2]), Fraction(match[3])
     if seconds >= 60 or (match[1] and minutes >= 60):
-        raise ValueError(f"{plain!r}: minutes and seconds of a clock go up to 59")
+        raise ValueError(f"{plain!r}: minutes and seconds of a clock go up to 59; write 1:30")
     total = int(match[1] or 0) * 3600 + minutes * 60 + seconds
     return When(Span(Fraction(total), Unit.SECONDS))
 
@@ -143,8 +147,18 @@ def _bar(plain: str) -> When | None:
         return None
     bar, beat = int(match[1]), Fraction(match[2] or 1)
     if bar < 1 or beat < 1:
-        raise ValueError(f"{plain!r}: bars and the beats of a bar count from 1")
+        raise ValueError(f"{plain!r}: bars and the beats of a bar count from 1; write bar 1")
     return When(Span(Fraction(bar - 1), Unit.BARS), beat - 1)
+
+
+def _share(plain: str) -> When | None:
+    match = _SHARE.fullmatch(plain)
+    if match is None:
+        return None
+    share = Fraction(match[2]) / 100
+    if share > 1:
+        raise ValueError(f"{plain!r}: the film ends at 100%; write end")
+    return When(START.span, share=share, is_on_bar=bool(match[1]))
 
 
 def _instead(span: Span) -> str:

@@ -57,10 +57,35 @@ def through(one: np.ndarray, other: np.ndarray, weights: np.ndarray) -> np.ndarr
     alpha = parts[0] + parts[1]
     whole = np.maximum(alpha, 1)[..., None]
     colors = one[..., :3] * parts[0][..., None] + other[..., :3] * parts[1][..., None]
-    result = np.empty_like(one)
+    result = np.empty(one.shape, np.uint8)
     result[..., :3] = (colors + whole // 2) // whole
     result[..., 3] = (alpha + ONE // 2) >> 15
     return result
+
+
+def apart(
+    one: np.ndarray,
+    other: np.ndarray,
+    weights: tuple[np.ndarray, np.ndarray],
+    ground: tuple[float, float, float],
+) -> np.ndarray:
+    """Both pictures through masks of their own, and the ground where neither is seen.
+
+    Args:
+        one: As for `faded`.
+        other: As for `faded`.
+        weights: How much of each, [H, W] int32; together `ONE` at most.
+        ground: Code values; with alpha nothing is seen there.
+    """
+    behind = np.zeros((1, 1, one.shape[2]), np.uint8)
+    behind[..., :3] = np.rint(ground).astype(np.uint8)
+    if one.shape[2] == 4:
+        behind[..., 3] = 0
+    seen = np.minimum(weights[0] + weights[1], ONE)
+    # what is seen of the one, as a part of what is seen at all
+    shares = (weights[1].astype(np.int64) * ONE // np.maximum(seen, 1)).astype(np.int32)
+    both = through(one, other, shares)
+    return through(np.broadcast_to(behind, both.shape), both, seen)
 
 
 def thinned(picture: np.ndarray, ground: tuple[float, float, float], opacity: float) -> np.ndarray:
