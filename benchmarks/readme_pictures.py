@@ -83,6 +83,10 @@ PICTURES: dict[str, Picture] = {
     "circles": Picture([stills("out/circles.png")], 760),
     "glass": Picture([of("out/glass.mp4", 57)], 1120, quality=86),
     "lights": Picture([of("out/lights.mp4", 0)], 1120),
+    "pulse": Picture([of("out/pulse.mp4", 3, 12, 43, 50)], 480),
+    "build-up": Picture([of("out/build-up.mp4", 0, 25, 45, 72)], 480),
+    "ink-to-colour": Picture([of("out/ink-to-colour.mp4", 10, 28, 45, 65)], 480, quality=86),
+    "strobe-safe": Picture([of("out/strobe-safe.mp4", 7, 43, 53, 70)], 480, quality=86),
     "lenses": Picture([of("out/lenses.mp4", 61)], 1120),
 }
 

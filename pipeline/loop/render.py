@@ -11,9 +11,12 @@ from pipeline.look.source_pictures import source_pictures
 from pipeline.loop.convert import SOLVED_BEHIND, triangulator_of
 from pipeline.loop.result import Animated, Tally
 from pipeline.loop.threads import Behind
+from pipeline.options.course import Course
 from pipeline.options.job import Job
+from pipeline.options.look import Look
 from pipeline.options.solve_options import SolveOptions
 from pipeline.progress import Progress
+from pipeline.timeline.timeline import Timeline
 from pipeline.track import FrameRow, TrackReader
 from stages.media import FrameRange, MediaInfo, open_decoder
 from stages.snapshot import Snapshot
@@ -53,7 +56,20 @@ def render(job: Job, track: TrackReader, info: MediaInfo, progress: Progress) ->
             writer.put(Solved(row.shot, snapshot, source, share, is_shown=is_shown))
             if is_shown:
                 tally.add(row.triangle_count, snapshot.rmse)
-    return tally.result(begun, (), [*device.notes, *drawing.notes])
+    return tally.result(begun, (), [*device.notes, *drawing.notes, *_unsolved(look, options)])
+
+
+def _unsolved(look: Look, options: SolveOptions) -> list[str]:
+    """What is told of a timeline that changes meshes, where the track was solved without one."""
+    timeline = look.score
+    if not (isinstance(timeline, Timeline) and timeline.changes_meshes):
+        return []
+    if options.course != Course():
+        return []
+    return [
+        f"{timeline.file} changes meshes, and the track was solved without: they stay as they are; "
+        "solve with --timeline for that"
+    ]
 
 
 def _fitted(

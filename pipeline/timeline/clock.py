@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import lru_cache
 
 import numpy as np
 
@@ -67,9 +68,10 @@ class Clock:
             index: Its number in the source.
             shown: When the file shows it [s from the first frame]; None for an even rate.
         """
+        if shown is None:
+            return _even_time(index - self.first, self.rate)
         even = (index - self.first) / self.rate
-        is_even = shown is None or abs(shown - even) * self.rate <= _NEAR
-        return float(even if is_even or shown is None else shown)
+        return float(even if abs(shown - even) * self.rate <= _NEAR else shown)
 
     def frame_at(self, time: float) -> int:
         """Number of the frame that is nearest to a time [s]."""
@@ -154,3 +156,9 @@ class Clock:
         start = float(beats.beat_at(beats.time_of_bar(bar)))
         beat = float(beats.beat_at(time)) - start + 1
         return f"{bar}" if abs(beat - 1) < 0.02 else f"{bar}.{round(beat, 2):g}"
+
+
+@lru_cache(maxsize=4096)
+def _even_time(number: int, rate: Fraction) -> float:
+    """When a frame is shown at an even rate [s]; many curves ask for the same one."""
+    return float(number / rate)

@@ -7,6 +7,8 @@ import numpy as np
 from stages.spaces.oklab import TO_CONES, TO_LAB
 from warp_kernels.styles.color import parse_color
 
+_FROM_LAB, _FROM_CONES = np.linalg.inv(TO_LAB), np.linalg.inv(TO_CONES)
+
 
 def mixed(first: str, second: str, share: float) -> str:
     """A colour between two.
@@ -22,8 +24,7 @@ def mixed(first: str, second: str, share: float) -> str:
     if share <= 0.0 or share >= 1.0:
         return first if share <= 0.0 else second
     lab = (1.0 - share) * _lab_of(first) + share * _lab_of(second)
-    light = np.linalg.solve(TO_CONES, np.linalg.solve(TO_LAB, lab) ** 3)
-    light = np.clip(light, 0.0, 1.0)
+    light = np.clip(_FROM_CONES @ (_FROM_LAB @ lab) ** 3, 0.0, 1.0)
     code = np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
     return "#{:02x}{:02x}{:02x}".format(*(int(value) for value in np.rint(255 * code)))
 

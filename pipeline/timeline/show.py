@@ -16,6 +16,7 @@ from pipeline.timeline.targets import (
     OWN,
     PICTURE,
     Kind,
+    Slot,
     Target,
     found_in,
     kind_of_target,
@@ -60,6 +61,8 @@ class Driven:
 
     target: Target
     """What changes."""
+    slot: Slot | None
+    """The member that it changes, looked up once: most of what a frame costs was that."""
     kind: Kind
     """Which values it takes."""
     course: Keyed | Expression
@@ -365,7 +368,7 @@ def _lines(
             )
         else:
             course = curve.course
-        yield Driven(curve.target, kind, course, clock, span)
+        yield Driven(curve.target, found_in(look, curve.target), kind, course, clock, span)
 
 
 def _scene_of(number: int, placed: Placed, lines: list[Driven], values: tuple[Any, ...]) -> Setting:
@@ -384,10 +387,9 @@ def _scene_of(number: int, placed: Placed, lines: list[Driven], values: tuple[An
             elif target.parameter in OWN:
                 own = {**own, target.parameter: value}
             continue
-        slot = found_in(look, target)
-        assert slot is not None
-        key = slot.field, slot.place
-        members[key] = slot.member
+        assert line.slot is not None
+        key = line.slot.field, line.slot.place
+        members[key] = line.slot.member
         changes.setdefault(key, {})[target.parameter] = value
     changed = {key: replace(members[key], **given) for key, given in changes.items()}
     look = with_members(look, changed)

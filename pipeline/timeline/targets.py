@@ -3,6 +3,7 @@
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import Field, dataclass, fields, replace
+from functools import lru_cache
 from typing import Any
 
 from pipeline.options.look import Look
@@ -219,6 +220,7 @@ def kind_of_target(target: Target, look: Look) -> Kind | None:
     )
 
 
+@lru_cache(maxsize=1024)
 def is_color(text: str) -> bool:
     """Whether a text is a colour."""
     try:
