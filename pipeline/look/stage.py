@@ -77,11 +77,6 @@ class Stage:
             transparent = wardrobe.prepare(scene.look).is_transparent
             self._is_alpha |= transparent and scene.look.backdrop(model) is None
 
-    @property
-    def notes(self) -> list[str]:
-        """What is told of the timeline, one sentence each."""
-        return [] if self._show is None else self._show.notes
-
     def looks_at(self, index: int, shown: Fraction, shot: int) -> Looks:
         """What is drawn at a frame.
 

@@ -1,6 +1,8 @@
 """The look of a frame: a timeline at the times of one film."""
 
+from bisect import bisect_right
 from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Any
@@ -11,6 +13,7 @@ from pipeline.options.look import Look
 from pipeline.timeline.clock import Clock
 from pipeline.timeline.expression import Expression
 from pipeline.timeline.keyframes import Keyed
+from pipeline.timeline.place import Place
 from pipeline.timeline.signals import Signals
 from pipeline.timeline.targets import (
     OWN,
@@ -113,7 +116,7 @@ class Driven:
             at = {self.clock.frame_at(time) for time in self.course.times}
             return {frame + step for frame in at for step in (-1, 0, 1)}
         values = self.values(first, last)
-        ends = [value for value in (self.kind.least, self.kind.most, 0.0, 1.0)]
+        ends = (self.kind.least, self.kind.most, 0.0, 1.0)
         places = [int(values.argmin()), int(values.argmax())]
         places += [int(np.abs(values - end).argmin()) for end in ends if np.isfinite(end)]
         return {first + place for place in places}
@@ -185,7 +188,7 @@ class Show:
         """
         time = self.clock.time_of_frame(index, shown)
         frame = self.clock.frame_at(time)  # where frames come unevenly, their times count
-        number = max(i for i, one in enumerate(self.sections) if i == 0 or one.first <= frame)
+        number = self._number_at(frame)
         placed = self.sections[number]
         scene = self._scene(number, index, time, shot)
         if frame >= placed.ends or number == 0:
@@ -193,6 +196,19 @@ class Show:
         share = (frame - placed.first + 1) / (placed.ends - placed.first + 1)
         before = self._scene(number - 1, index, time, shot)
         return Instant(scene, before, placed.section.transition, share)
+
+    def _number_at(self, frame: int) -> int:
+        """Number of the section that a frame belongs to; frames before the first are its own."""
+        return max(0, bisect_right(self.sections, frame, key=lambda one: one.first) - 1)
+
+    def _seen(self, first: int, last: int) -> Iterator[tuple[int, Placed, int, int]]:
+        """Sections that are seen from one frame to another, with the first and the last frame."""
+        for number, placed in enumerate(self.sections):
+            later = self.sections[number + 1] if number + 1 < len(self.sections) else None
+            begin = max(first, placed.first) if number else first
+            end = last if later is None else min(last, max(later.first, later.ends) - 1)
+            if begin <= end:
+                yield number, placed, begin, end
 
     def _scene(self, number: int, index: int, time: float, shot: int) -> Setting:
         placed = self.sections[number]
@@ -211,13 +227,10 @@ class Show:
             last: Number of the last one.
         """
         found: list[Setting] = []
-        for number, placed in enumerate(self.sections):
-            later = self.sections[number + 1] if number + 1 < len(self.sections) else None
-            begin = max(first, placed.first) if number else first
-            end = last if later is None else min(last, max(later.first, later.ends) - 1)
+        for number, placed, begin, end in self._seen(first, last):
             frames = {begin, end}
             for line in placed.lines:
-                if not line.target.is_mesh and begin <= end:
+                if not line.target.is_mesh:
                     frames |= line.turns(begin, end)
             shown = sorted(f for f in frames if begin <= f <= end)
             found += [self._scene(number, f, self.clock.time_of_frame(f), f) for f in shown]
@@ -228,11 +241,6 @@ class Show:
         """Kinds of transitions that there are."""
         return {one.section.transition.kind for one in self.sections if one.ends > one.first}
 
-    @property
-    def notes(self) -> list[str]:
-        """Choices that were made, one sentence each."""
-        return []
-
     def mesh_at(self, index: int, name: str) -> float | None:
         """What changes meshes, at a frame; None where the file says nothing.
 
@@ -240,8 +248,7 @@ class Show:
             index: Number of the frame in the source.
             name: One of `targets.MESH`.
         """
-        number = max(i for i, one in enumerate(self.sections) if i == 0 or one.first <= index)
-        placed = self.sections[number]
+        placed = self.sections[self._number_at(index)]
         for line in placed.lines:
             if str(line.target) == name:
                 return float(line.at(index, self.clock.time_of_frame(index), 0))
@@ -257,12 +264,9 @@ class Show:
         Raises:
             OptionError: If there is one.
         """
-        for number, placed in enumerate(self.sections):
-            later = self.sections[number + 1] if number + 1 < len(self.sections) else None
-            begin = max(first, placed.first)
-            end = last if later is None else min(last, max(later.first, later.ends) - 1)
+        for _, placed, begin, end in self._seen(first, last):
             for line in placed.lines:
-                if isinstance(line.course, Expression) and begin <= end:
+                if isinstance(line.course, Expression):
                     line.values(begin, end)
 
     def _place(self, number: int, section: Section, look: Look, begin: float, end: float) -> None:
@@ -271,14 +275,12 @@ class Show:
         first = clock.frame_at(begin)
         ends = first
         if number and section.transition.kind != "cut":
-            try:
+            with _told_at(section.place):
                 over = clock.later(begin, section.transition.span)
-                most = section.transition.most
-                if most is not None and clock.end is not None:
-                    over = min(over, begin + float(most) * clock.end)
-                ends = clock.frame_at(over)
-            except OptionError as error:
-                raise section.place.error(error) from error
+            most = section.transition.most
+            if most is not None and clock.end is not None:
+                over = min(over, begin + float(most) * clock.end)
+            ends = clock.frame_at(over)
             if ends > clock.frame_at(end):
                 raise section.place.error(
                     f"the transition of {section.transition.span} into {section.name} is longer "
@@ -300,7 +302,9 @@ def _begins(
     base, before, gap = looks[0], 0.0, None
     last = -1
     for number, (section, look) in enumerate(zip(timeline.sections, looks[1:], strict=True)):
-        begin, place = _time(section, clock, before), section.begin_place
+        place = section.begin_place
+        with _told_at(place):
+            begin = clock.time_of(section.begin, before)
         if gap is not None and gap < begin - 0.5 / float(clock.rate):
             yield _gap(timeline, section, gap, base)
             last = clock.frame_at(gap)
@@ -317,7 +321,10 @@ def _begins(
             )
         yield section, look, begin
         before, last = begin, frame
-        gap = None if section.end is None else _end(section, clock, begin)
+        gap = None
+        if section.end is not None:
+            with _told_at(section.place):
+                gap = clock.time_of(section.end, begin)
         if gap is not None and clock.frame_at(gap) <= frame:
             raise section.place.error(f'{section.name} ends before it begins; write to = "+4s"')
     if gap is not None and (clock.end is None or gap < clock.end):
@@ -332,19 +339,13 @@ def _gap(
     return section, base, begin
 
 
-def _time(section: Section, clock: Clock, before: float) -> float:
+@contextmanager
+def _told_at(place: Place) -> Iterator[None]:
+    """What a time cannot be is told with the place where it stands."""
     try:
-        return clock.time_of(section.begin, before)
+        yield
     except OptionError as error:
-        raise section.begin_place.error(error) from error
-
-
-def _end(section: Section, clock: Clock, begin: float) -> float:
-    assert section.end is not None
-    try:
-        return clock.time_of(section.end, begin)
-    except OptionError as error:
-        raise section.place.error(error) from error
+        raise place.error(error) from error
 
 
 def _lines(
