@@ -23,6 +23,7 @@ from stages.spaces import SPACES
 from stages.topology import TOPOLOGIES
 from stages.topology.appraise import Appraiser
 from stages.topology.goal import SLIVER_HEIGHT, Goal
+from stages.topology.refine_options import RefineOptions
 from stages.triangulate_options import TriangulateOptions
 from warp_kernels.color_model import CHANNELS, ColorModel
 from warp_kernels.device.device import Device
@@ -76,7 +77,7 @@ class Triangulator:
         drawn: ColorModel | None = None,
     ) -> None:
         self._space = SPACES[options.space]()
-        self.options = _against(options, self._space.scale)
+        self._options = _against(options, self._space.scale)
         self._device, self._size = device, size
         self._least = options.refine.least_count(*size)
         fitted = max(options.model, drawn or options.model, key=lambda model: model.degree)
@@ -91,7 +92,7 @@ class Triangulator:
 
     def _bench(self, *, weighted: bool) -> Bench:
         """Make what pictures with weights, or those without, are worked on with."""
-        options = self.options
+        options = self._options
         self._device.expect(solving_kernels(self._device, options.model, options.sums, weighted))
         workspace = Workspace(self._device, self._size, options.model, options.sums, weighted)
         appraiser = Appraiser(workspace, SLIVER_HEIGHT)
@@ -109,6 +110,14 @@ class Triangulator:
         self._workspace, self._appraiser = bench.workspace, bench.appraiser
         self._approximator = bench.approximator
 
+    def refine_by(self, refine: RefineOptions) -> None:
+        """Have other numbers of triangles, or bounds of the error, from the next frame on.
+
+        Args:
+            refine: How many, and where; all else stays as the options said.
+        """
+        self._options = replace(self._options, refine=refine)
+
     def first(self, frame: Frame, layout: Layout, rng: np.random.Generator) -> Snapshot:
         """Triangulate a frame from scratch.
 
@@ -118,7 +127,7 @@ class Triangulator:
             rng: Randomness of the layout.
         """
         self._load(frame)
-        refine = self.options.refine
+        refine = self._options.refine
 
         def attempt(count: int) -> Trial:
             """Approximate the frame."""
@@ -161,7 +170,7 @@ class Triangulator:
                 the picture boils, and colours keep to its; None for neither.
         """
         self._load(frame)
-        iterations = self.options.frame_iterations
+        iterations = self._options.frame_iterations
         rounds = max(1, iterations // FRAME_ROUND - 1)
         each = iterations // (rounds + 1)
         convergence = Convergence(FRAME_SAVING, patience=1)
@@ -203,7 +212,7 @@ class Triangulator:
             rounds: Looks at the topology.
             each: Iterations after each of them.
         """
-        refine = self.options.refine
+        refine = self._options.refine
         count = refine.triangles if refine.quality is None else mesh.triangle_count
         boiling = int(unrest.boiling(mesh).sum())
         renewal = self._approximator.topology.renewal
@@ -246,7 +255,7 @@ class Triangulator:
 
     def _followed_count(self, mesh: Mesh) -> int:
         """How many triangles a later frame shall have; a quality lets their number drift."""
-        refine = self.options.refine
+        refine = self._options.refine
         if refine.quality is None:
             return refine.triangles
         missed = self._rmse(mesh) / refine.quality
@@ -277,7 +286,7 @@ class Triangulator:
             self._workspace,
             mesh,
             iterations,
-            self.options.optimize,
+            self._options.optimize,
             dead_band=DEAD_BAND,
             displacement=FRAME_DISPLACEMENT,
         )
@@ -287,7 +296,7 @@ class Triangulator:
         count = self._approximator.growth(goal).count(0.0, goal.count)
         mesh = layout.build(frame.pixels, max(2, count), rng)
         mesh = self._approximator.approximate(mesh, goal)
-        if self.options.refine.quality is None or self._fitting is not self._even.workspace:
+        if self._options.refine.quality is None or self._fitting is not self._even.workspace:
             return Trial(mesh, self._rmse(mesh))
         return Trial(mesh, self._snapshot(frame, mesh).rmse)  # moved colours cost a little
 
@@ -298,7 +307,7 @@ class Triangulator:
 
     def _goal(self, count: int, *, calm: bool = False, unrest: Unrest | None = None) -> Goal:
         """What the mesh must be like, with a number of triangles."""
-        refine = self.options.refine
+        refine = self._options.refine
         return Goal(count, refine.error, calm, refine.largest_area, unrest)
 
     def _solution(self, frame: Frame, mesh: Mesh, earlier: Snapshot | None = None) -> Snapshot:

@@ -1,11 +1,13 @@
 """What every space of the error promises, its definition, and that drawn colours stay RGB."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import cv2
 import numpy as np
 import pytest
 
+import trimotion
 from stages.layouts import LAYOUTS
 from stages.snapshot import Snapshot
 from stages.spaces import SPACES
@@ -150,3 +152,20 @@ def test_luma_does_not_see_colours_of_equal_brightness() -> None:
     assert len(np.unique(SPACES["luma"]().convert(picture))) == 1
     errors = {name: triangulated(picture, name).rmse for name in SPACES}
     assert max(errors["rgb"], errors["oklab"]) < 0.3 * errors["luma"]
+
+
+def test_a_film_in_oklab_weighs_as_the_stage_does() -> None:
+    """Weights come with a frame, and options with its number: what a space asks for stays."""
+    picture = waves(97, 71)
+    weights = np.full(picture.shape[:2], 80, np.uint8)
+    weights[20:50, 30:60] = 255
+    seen = trimotion.triangulate(
+        picture, space="oklab", weights=weights, triangles=80, iterations=40, threads=1
+    )
+    options = TriangulateOptions(
+        space="oklab", iterations=40, refine=replace(OPTIONS.refine, triangles=80)
+    )
+    frame = replace(frame_of(picture), weights=weights)
+    triangulator = Triangulator(Device("cpu", 1), (97, 71), options)
+    direct = triangulator.first(frame, LAYOUTS["importance"](), np.random.default_rng([0, 0]))
+    np.testing.assert_array_equal(seen.vertices, direct.mesh.vertices)

@@ -5,7 +5,6 @@ A frame is drawn while the next one is solved and later ones are prepared, each 
 
 from collections.abc import Generator, Iterable, Iterator, Sequence
 from contextlib import closing, nullcontext
-from dataclasses import replace
 from time import perf_counter
 
 import numpy as np
@@ -28,7 +27,6 @@ from stages.media import Decoder
 from stages.media.expected_frames import expected_frames
 from stages.motion.advect import advect
 from stages.triangulate import Triangulator
-from stages.triangulate_options import TriangulateOptions
 from warp_kernels.color_model import ColorModel
 from warp_kernels.device.device import Device
 
@@ -138,7 +136,7 @@ def solved_frames(
     snapshot = None if past is None else past.snapshot
     for ready in found:
         frame, mesh_from = ready.frame, ready.mesh_from
-        triangulator.options = _options_at(frame.index, options)
+        triangulator.refine_by(options.course.refine(frame.index, options.triangulate.refine))
         if snapshot is None or mesh_from is MeshFrom.LAYOUT:
             rng = np.random.default_rng([options.seed, frame.index])
             snapshot = triangulator.first(frame, options.layout, rng)
@@ -150,12 +148,6 @@ def solved_frames(
         else:
             snapshot = triangulator.next(frame, advect(snapshot.mesh, mesh_from), snapshot)
         yield ready.solved(snapshot, keeps_picture=keeps)
-
-
-def _options_at(index: int, options: SolveOptions) -> TriangulateOptions:
-    """How the picture of a frame becomes triangles, where that changes."""
-    now = options.triangulate
-    return replace(now, refine=options.course.refine(index, now.refine))
 
 
 def _recall(job: Job, tally: Tally, writer: Behind[Solved] | None) -> None:
