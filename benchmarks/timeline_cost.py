@@ -1,12 +1,10 @@
-"""What twenty curves cost: a stack drawn with them and the same stack without, in turn.
+"""What twenty curves cost: every frame drawn by them, and again with the same values held.
 
 Run it in the root of the repository: python benchmarks/timeline_cost.py [--rounds 5]
 """
 
 import argparse
-import statistics
 import tempfile
-from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from time import perf_counter
@@ -59,22 +57,28 @@ bpm = 120
 """
 
 
-def seconds(job: Job, track: Path) -> float:
-    """How long a frame of a track takes to be drawn in the mean [s], without encoding."""
+def seconds(job: Job, track: Path) -> np.ndarray:
+    """How long frames take to be drawn, without encoding [s]: constant and by curves, [2].
+
+    Every frame is drawn by its curves and at once again with the same values held, so that both
+    draw the same pixels and differ in what the curves take alone.
+    """
     info = probe(CLIP)
-    device = Device("auto", 0)
     framing = job.look.framing_for((info.width, info.height), info.sample_aspect)
-    stage = open_stage(device, job, info, framing)
-    with TrackReader(track) as reader, device:
-        snapshots = [reader.snapshot(row.frame) for row in reader.rows]
-        times = []
-        for snapshot in snapshots:
+    times = []
+    with TrackReader(track) as reader, Device("auto", 0) as device:
+        stage = open_stage(device, job, info, framing)
+        for row in reader.rows:
+            snapshot = reader.snapshot(row.frame)
+            view = Posed(snapshot, None, None, {}, None, None)
             begun = perf_counter()
             shown = Fraction(snapshot.pts) * snapshot.time_base - info.start_time
             looks = stage.looks_at(snapshot.frame_index, shown, 0)
-            stage.draw(looks, Posed(snapshot, None, None, {}, None, None))
-            times.append(perf_counter() - begun)
-    return float(np.mean(times[3:]))
+            stage.draw(looks, view)
+            curved = perf_counter()
+            stage.draw(looks, view)
+            times.append((perf_counter() - curved, curved - begun))
+    return np.median(times[3:], axis=0)
 
 
 def main() -> None:
@@ -87,15 +91,9 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         show = Path(folder) / "show.toml"
         show.write_text(CURVES)
-        # opacities below 1 as the curves have them: the same kernels are compared
-        plain = tuple(replace(s, opacity=min(s.opacity, 0.9)) for s in styles[1:])
-        still = Job(SolveOptions(CLIP), Look(styles=(styles[0], *plain)))
-        moved = with_timeline(replace(still, look=replace(still.look, timeline=str(show))))
-        both = [
-            (seconds(still, given.track), seconds(moved, given.track))
-            for _ in range(1 + given.rounds)
-        ]
-    steady, curved = (statistics.median(pair[i] for pair in both[1:]) for i in (0, 1))
+        job = with_timeline(Job(SolveOptions(CLIP), Look(styles=styles, timeline=str(show))))
+        both = [seconds(job, given.track) for _ in range(given.rounds)]
+    steady, curved = np.median(both, axis=0)
     print(f"constant {1e3 * steady:.2f} ms, 20 curves {1e3 * curved:.2f} ms a frame: ", end="")
     print(f"{100 * (curved / steady - 1):+.1f} %")
 
