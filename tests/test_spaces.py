@@ -9,6 +9,7 @@ import pytest
 
 import trimotion
 from stages.layouts import LAYOUTS
+from stages.optimize_options import OptimizeOptions
 from stages.snapshot import Snapshot
 from stages.spaces import SPACES
 from stages.topology.refine_options import RefineOptions
@@ -169,3 +170,14 @@ def test_a_film_in_oklab_weighs_as_the_stage_does() -> None:
     triangulator = Triangulator(Device("cpu", 1), (97, 71), options)
     direct = triangulator.first(frame, LAYOUTS["importance"](), np.random.default_rng([0, 0]))
     np.testing.assert_array_equal(seen.vertices, direct.mesh.vertices)
+
+
+def test_regularity_weighs_as_much_in_every_space() -> None:
+    """A picture in Oklab is solved as its code values are in RGB with a regularity of that scale."""
+    picture, space = waves(97, 71), SPACES["oklab"]()
+    regularity = OptimizeOptions().regularity * space.scale
+    seen = triangulated(picture, "oklab")
+    expected = triangulated(
+        space.convert(picture), "rgb", optimize=OptimizeOptions(regularity=regularity)
+    )
+    np.testing.assert_array_equal(seen.mesh.vertices, expected.mesh.vertices)
