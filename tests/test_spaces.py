@@ -173,7 +173,7 @@ def test_a_film_in_oklab_weighs_as_the_stage_does() -> None:
 
 
 def test_regularity_weighs_as_much_in_every_space() -> None:
-    """A picture in Oklab is solved as its code values are in RGB with a regularity of that scale."""
+    """A picture in Oklab is solved as its code values in RGB with a regularity of its scale."""
     picture, space = waves(97, 71), SPACES["oklab"]()
     regularity = OptimizeOptions().regularity * space.scale
     seen = triangulated(picture, "oklab")
