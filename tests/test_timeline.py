@@ -182,6 +182,11 @@ def test_an_expression_at_a_frame_does_not_depend_on_the_frames_beside_it(text: 
         ("env(t)", 11, "takes moments first"),
         ("'red'", 11, "is no number"),
         ("sin(1, 2)", 11, "takes 1 numbers"),
+        ("1 + 1e999", 15, "is too large"),
+        ("9" * 400, 11, "is too large"),
+        ("noise(1e999)", 17, "is too large"),
+        ("1+" * 400 + "1", 11, "operations one within another"),
+        ("-" * 900 + "1", 11, "operations one within another"),
     ],
 )
 def test_what_is_no_expression_is_told_with_line_and_column(
@@ -194,7 +199,13 @@ def test_what_is_no_expression_is_told_with_line_and_column(
 
 @pytest.mark.parametrize(
     ("text", "frame"),
-    [("1/(f - 30)", 30), ("(10 - f)**0.5", 11), ("f % (f - 5)", 5), ("9.9**f", 0)],
+    [
+        ("1/(f - 30)", 30),
+        ("(10 - f)**0.5", 11),
+        ("f % (f - 5)", 5),
+        ("9.9**f", 0),
+        ("sin(9.9**f)", 0),
+    ],
 )
 def test_what_is_no_number_at_a_frame_is_told_with_the_frame(text: str, frame: int) -> None:
     with pytest.raises(OptionError, match=rf"at frame {frame or ''}"):
