@@ -76,7 +76,14 @@ def test_times(text: str, seconds: float) -> None:
     assert CLOCK.time_of(parse_when(text), before=3.0) == pytest.approx(seconds, abs=1e-9)
 
 
-@pytest.mark.parametrize("text", ["12", "4 bars", "bar 0", "bar 1.0", "f1.5", "1:75", "noon", ""])
+HUGE = ("{}s", "f{}", "b{}", "bar {}", "bar 1.{}", "{}%", "{}:00", "+{} bars")
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["12", "4 bars", "bar 0", "bar 1.0", "f1.5", "1:75", "noon", ""]
+    + [form.format("9" * count) for form in HUGE for count in (12, 400, 5000)],
+)
 def test_what_is_no_time_is_told_with_a_remedy(text: str) -> None:
     with pytest.raises(ValueError, match="write"):
         parse_when(text)
