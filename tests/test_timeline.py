@@ -275,6 +275,8 @@ def test_frames_that_come_unevenly_have_the_look_of_their_time() -> None:
         ("progress *", "progress %% *", r":11:\d+: .*is no expression"),
         ("[curves]", "[curve]", r":13: unknown key 'curve'; did you mean curves"),
         ("opacity = 0.5", "opacity = ", r":16:\d+: no TOML"),
+        ("opacity = 0.5", "opacity = " + "9" * 5000, r":\d+: no TOML \(exceeds the limit"),
+        ('"0s"', '"0s"\nname = "a\u2028b"\nfro = 1', r":5:\d+: unknown key 'fro'"),
         ('from = "bar 3"', "", r":6: a section needs a time"),
     ],
 )
