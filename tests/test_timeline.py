@@ -324,6 +324,11 @@ def test_broken_timelines_are_told_in_one_line(
     assert refused > 6
 
 
+def test_beats_of_a_name_that_no_file_can_have_are_told() -> None:
+    with pytest.raises(OptionError, match=r"^show\.toml:1:10: .*write the name of a file"):
+        parse_timeline(f'beats = "{"a" * 5000}"', "show.toml", Look())
+
+
 def test_beats_come_from_a_file_that_the_timeline_names(tmp_path: Path) -> None:
     (tmp_path / "song.txt").write_text("0.5\n1.1\n1.6\n2.2\n")
     (tmp_path / "show.toml").write_text('beats = "song.txt"\n[curves]\nopacity = "b1: 1, b3: 0"\n')

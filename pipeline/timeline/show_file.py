@@ -114,6 +114,9 @@ def _beats(tables: Mapping[str, Any], places: Places) -> Heard | None:
     beside = Path(places.file).parent / name
     try:
         return read_beats(beside if beside.is_file() else Path(name))
+    except OSError as error:  # a name that no file can have
+        reason = str(error.strerror).lower()
+        raise place.error(f"beats = {name[:30]!r}: {reason}; write the name of a file") from error
     except TrimotionError as error:
         raise place.error(error) from error
 
