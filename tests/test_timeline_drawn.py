@@ -94,6 +94,8 @@ def test_jobs_resume_and_ranges_give_the_meshes_of_the_whole(tmp_path: Path) -> 
     trimotion.solve(clip, two, timeline=tmp_path / "a.toml", frames="0-4", **QUICK)
     with pytest.raises(trimotion.TrimotionError, match="triangles of the timeline"):
         trimotion.solve(clip, two, timeline=tmp_path / "b.toml", resume=True, **QUICK)
+    with pytest.raises(trimotion.TrimotionError, match=r"timeline none instead of \[\["):
+        trimotion.solve(clip, two, resume=True, **QUICK)
     trimotion.solve(clip, two, timeline=tmp_path / "copy.toml", resume=True, **QUICK)
     with trimotion.open_track(one) as whole, trimotion.open_track(two) as resumed:
         counts = [len(frame.triangles) for frame in whole]
