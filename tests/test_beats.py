@@ -166,7 +166,16 @@ BROKEN = {
     "f.txt": ("\n\n", "holds no time"),
     "g.edl": ("TITLE: X\n", "holds no event"),
     "h.mid": (MIDI[:40].decode("latin-1"), "breaks off"),
-    "i.json": ('{"beats": [1e999]}', "inf"),
+    "i.json": ('{"beats": [1e999]}', "inf, which is too large"),
+    "j.json": (f'{{"beats": [0, {"9" * 400}]}}', "holds 9{20}, which is too large"),
+    "k.json": ('{"beats": [0, 5e-324]}', "beats go back"),
+    "l.json": ('{"beats": [0, 1], "sections": null}', "sections is not a list"),
+    "m.json": ('{"beats": [0], "bpm": 1e308}', "too large"),
+    "n.json": (
+        '{"beats": [0], "envelopes": {"low": {"rate": 1e8, "values": [0]}}}',
+        "rate of envelope low",
+    ),
+    "o.txt": ("9" * 400 + ":00:01\n", "holds no time"),
 }
 
 

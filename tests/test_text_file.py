@@ -7,6 +7,7 @@ import pytest
 
 from pipeline.options.presets import read_preset
 from pipeline.track.cuts import read_cuts
+from stages.media.text_file import bounded_bytes
 from warp_kernels.errors import MediaError, OptionError
 
 ENCODINGS = {
@@ -56,3 +57,11 @@ def test_what_is_no_text_is_one_line(tmp_path: Path) -> None:
             read_cuts(path)
     path.write_bytes(b"")
     assert read_cuts(path) == frozenset()
+
+
+def test_a_file_that_never_ends_is_told() -> None:
+    device = Path("/dev/zero")
+    if not device.exists():
+        pytest.skip("there is no such device")
+    with pytest.raises(ValueError, match="larger than 1 MiB"):
+        bounded_bytes(device, 1 << 20)

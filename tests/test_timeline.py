@@ -76,7 +76,14 @@ def test_times(text: str, seconds: float) -> None:
     assert CLOCK.time_of(parse_when(text), before=3.0) == pytest.approx(seconds, abs=1e-9)
 
 
-@pytest.mark.parametrize("text", ["12", "4 bars", "bar 0", "bar 1.0", "f1.5", "1:75", "noon", ""])
+HUGE = ("{}s", "f{}", "b{}", "bar {}", "bar 1.{}", "{}%", "{}:00", "+{} bars")
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["12", "4 bars", "bar 0", "bar 1.0", "f1.5", "1:75", "noon", ""]
+    + [form.format("9" * count) for form in HUGE for count in (12, 400, 5000)],
+)
 def test_what_is_no_time_is_told_with_a_remedy(text: str) -> None:
     with pytest.raises(ValueError, match="write"):
         parse_when(text)
@@ -182,6 +189,11 @@ def test_an_expression_at_a_frame_does_not_depend_on_the_frames_beside_it(text: 
         ("env(t)", 11, "takes moments first"),
         ("'red'", 11, "is no number"),
         ("sin(1, 2)", 11, "takes 1 numbers"),
+        ("1 + 1e999", 15, "is too large"),
+        ("9" * 400, 11, "is too large"),
+        ("noise(1e999)", 17, "is too large"),
+        ("1+" * 400 + "1", 11, "operations one within another"),
+        ("-" * 900 + "1", 11, "operations one within another"),
     ],
 )
 def test_what_is_no_expression_is_told_with_line_and_column(
@@ -194,7 +206,13 @@ def test_what_is_no_expression_is_told_with_line_and_column(
 
 @pytest.mark.parametrize(
     ("text", "frame"),
-    [("1/(f - 30)", 30), ("(10 - f)**0.5", 11), ("f % (f - 5)", 5), ("9.9**f", 0)],
+    [
+        ("1/(f - 30)", 30),
+        ("(10 - f)**0.5", 11),
+        ("f % (f - 5)", 5),
+        ("9.9**f", 0),
+        ("sin(9.9**f)", 0),
+    ],
 )
 def test_what_is_no_number_at_a_frame_is_told_with_the_frame(text: str, frame: int) -> None:
     with pytest.raises(OptionError, match=rf"at frame {frame or ''}"):
@@ -257,6 +275,8 @@ def test_frames_that_come_unevenly_have_the_look_of_their_time() -> None:
         ("progress *", "progress %% *", r":11:\d+: .*is no expression"),
         ("[curves]", "[curve]", r":13: unknown key 'curve'; did you mean curves"),
         ("opacity = 0.5", "opacity = ", r":16:\d+: no TOML"),
+        ("opacity = 0.5", "opacity = " + "9" * 5000, r":\d+: no TOML \(exceeds the limit"),
+        ('"0s"', '"0s"\nname = "a\u2028b"\nfro = 1', r":5:\d+: unknown key 'fro'"),
         ('from = "bar 3"', "", r":6: a section needs a time"),
     ],
 )
@@ -302,6 +322,11 @@ def test_broken_timelines_are_told_in_one_line(
         assert (code, told) == (0, []) or (code == 2 and len(told) == 1), (text, told)
         assert not told or broken_timelines.TOLD.fullmatch(told[0]), told
     assert refused > 6
+
+
+def test_beats_of_a_name_that_no_file_can_have_are_told() -> None:
+    with pytest.raises(OptionError, match=r"^show\.toml:1:10: .*write the name of a file"):
+        parse_timeline(f'beats = "{"a" * 5000}"', "show.toml", Look())
 
 
 def test_beats_come_from_a_file_that_the_timeline_names(tmp_path: Path) -> None:

@@ -59,6 +59,17 @@ def test_a_frame_of_a_range_is_that_of_the_whole(place: Path) -> None:
             assert np.array_equal(pixels, whole[index]), index
 
 
+def test_a_range_has_alpha_where_the_whole_has(place: Path) -> None:
+    (place / "open.toml").write_text(
+        '[[section]]\nstyle = ["flat"]\n[[section]]\nfrom = "f6"\nstyle = ["edges"]\n'
+        "[curves]\nopacity = 0.5\n"
+    )
+    whole = drawn(place, "open", timeline=place / "open.toml")
+    part = drawn(place, "opaque", timeline=place / "open.toml", frames="2-3")
+    assert whole[2].shape[2] == 4
+    assert all(np.array_equal(pixels, whole[index]) for index, pixels in part.items())
+
+
 def test_a_frame_with_curves_is_that_of_the_same_stack_without(place: Path) -> None:
     whole = drawn(place, "curved", timeline=place / "show.toml")
     steady = drawn(place, "steady", styles=["flat", "edges:width=2.5"], frames="2")
@@ -83,6 +94,8 @@ def test_jobs_resume_and_ranges_give_the_meshes_of_the_whole(tmp_path: Path) -> 
     trimotion.solve(clip, two, timeline=tmp_path / "a.toml", frames="0-4", **QUICK)
     with pytest.raises(trimotion.TrimotionError, match="triangles of the timeline"):
         trimotion.solve(clip, two, timeline=tmp_path / "b.toml", resume=True, **QUICK)
+    with pytest.raises(trimotion.TrimotionError, match=r"timeline none instead of \[\["):
+        trimotion.solve(clip, two, resume=True, **QUICK)
     trimotion.solve(clip, two, timeline=tmp_path / "copy.toml", resume=True, **QUICK)
     with trimotion.open_track(one) as whole, trimotion.open_track(two) as resumed:
         counts = [len(frame.triangles) for frame in whole]

@@ -54,6 +54,7 @@ class Stage:
         model: The colour model that is optimised.
         show: What is drawn when; None if nothing changes.
         frames: Numbers of the first and the last frame that are drawn, as far as is known.
+        film: Those of the whole film, in the same way.
     """
 
     def __init__(
@@ -64,6 +65,7 @@ class Stage:
         model: ColorModel,
         show: Show | None,
         frames: tuple[int, int],
+        film: tuple[int, int],
     ) -> None:
         self._wardrobe, self._framing, self._model, self._show = wardrobe, framing, model, show
         self._steady = Instant(Setting(0, look))
@@ -72,10 +74,12 @@ class Stage:
         for kind in () if show is None else show.transitions:
             if kind in WAITING:
                 self._curtain(kind)
-        scenes = [self._steady.scene] if show is None else show.foreseen(*frames)
-        for scene in scenes:
-            transparent = wardrobe.prepare(scene.look).is_transparent
-            self._is_alpha |= transparent and scene.look.backdrop(model) is None
+        for scene in [self._steady.scene] if show is None else show.foreseen(*frames):
+            wardrobe.prepare(scene.look)
+        # of the whole film, whatever range of it is drawn: opacity means alpha then
+        for scene in [self._steady.scene] if show is None else show.foreseen(*film):
+            backdrop = scene.look.backdrop(model)
+            self._is_alpha |= backdrop is None and wardrobe.is_transparent(scene.look)
 
     def looks_at(self, index: int, shown: Fraction, shot: int) -> Looks:
         """What is drawn at a frame.
@@ -165,7 +169,7 @@ def open_stage(device: Device, job: Job, info: MediaInfo, framing: Framing) -> S
     look, model = job.look, job.solve.model
     wardrobe = Wardrobe(device, (info.width, info.height), framing.picture, look, model)
     show = show_of(look, model, info)
-    return Stage(wardrobe, framing, look, model, show, _frames(job, info))
+    return Stage(wardrobe, framing, look, model, show, _frames(job, info), _film(info))
 
 
 def check_stage(job: Job, info: MediaInfo) -> None:
@@ -180,12 +184,17 @@ def check_stage(job: Job, info: MediaInfo) -> None:
     """
     show = show_of(job.look, job.solve.model, info)
     if show is not None:
-        show.check(*_frames(job, info))
+        show.check(*_film(info))
+
+
+def _film(info: MediaInfo) -> tuple[int, int]:
+    """Numbers of the first and the last frame of a film, as far as is known."""
+    return info.first_frame, info.first_frame if info.last_frame is None else info.last_frame
 
 
 def _frames(job: Job, info: MediaInfo) -> tuple[int, int]:
     """Numbers of the first and the last frame that are drawn, as far as is known."""
     wanted = job.solve.frame_range
-    last = info.first_frame if info.last_frame is None else info.last_frame
-    first = min(max(wanted.first, info.first_frame), last)
+    start, last = _film(info)
+    first = min(max(wanted.first, start), last)
     return first, last if wanted.last is None else min(max(wanted.last, first), last)

@@ -13,6 +13,8 @@ from stages.render import Renderer
 from stages.snapshot import Snapshot
 from warp_kernels.color_model import ColorModel
 from warp_kernels.device.device import Device
+from warp_kernels.drawing.canvas import coats_of
+from warp_kernels.drawing.shade import channels_of
 from warp_kernels.drawing.stack_kind import kind_of_stack
 from warp_kernels.scene.stroke_lay import Lay
 
@@ -91,6 +93,16 @@ class Wardrobe:
             found.restyle(styles, masked)
         self._dressed[id(found)] = look
         return found
+
+    def is_transparent(self, look: Look) -> bool:
+        """Whether what is drawn in a look has alpha; nothing is made for it.
+
+        Args:
+            look: The look; without sections of its own.
+        """
+        masked = tuple(region.style for region in look.regions)
+        followed = tuple(i for i, region in enumerate(look.regions) if region.frames)
+        return channels_of(coats_of(look.shown_styles(self._model), masked, followed)) == 4
 
     def draw(self, look: Look, view: Posed) -> np.ndarray:
         """Draw a frame.

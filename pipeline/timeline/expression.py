@@ -4,7 +4,9 @@ Nothing is evaluated by Python: every node that is allowed becomes a function of
 """
 
 import ast
+import math
 import re
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NoReturn
@@ -21,7 +23,9 @@ from warp_kernels.errors import OptionError
 MOST_CHARACTERS = 1000
 """Longer texts are no expressions."""
 MOST_DEPTH = 40
-"""Deeper ones are no expressions either."""
+"""Deeper brackets are no expressions either."""
+MOST_NESTED = 100
+"""Operations within operations; `1 + 2 + 3` is one within another."""
 
 Code = Callable[[Signals], Value]
 """What a part of an expression comes to at some frames."""
@@ -117,9 +121,14 @@ def parse_expression(text: str, place: Place) -> Expression:
     """
     if len(text) > MOST_CHARACTERS or text.count("(") > MOST_DEPTH:
         raise place.error(f"the expression is too long ({len(text)} characters); shorten it")
-    plain, columns, lengths = _without_units(text)
     try:
-        tree = ast.parse(plain, mode="eval")
+        plain, columns, lengths = _without_units(text)
+    except ValueError as error:
+        raise place.error(error) from error
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # Python frowns upon `1if`, and we say what is wrong
+            tree = ast.parse(plain, mode="eval")
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
         at = max(getattr(error, "offset", 1) or 1, 1) - 1
         here = place.after(columns[min(at, len(columns) - 1)])
@@ -160,10 +169,23 @@ class _Reader:
         self._place = place
         self._columns = columns
         self._lengths = lengths
+        self._depth = 0
         self.names: set[str] = set()
 
     def code(self, node: ast.expr) -> Code:
         """What a node does."""
+        self._depth += 1
+        if self._depth > MOST_NESTED:
+            raise self._place.error(
+                f"the expression has more than {MOST_NESTED} operations one within another; "
+                "shorten it"
+            )
+        try:
+            return self._code(node)
+        finally:
+            self._depth -= 1
+
+    def _code(self, node: ast.expr) -> Code:
         if isinstance(node, ast.Constant):
             return self._constant(node)
         if isinstance(node, ast.Name):
@@ -186,7 +208,12 @@ class _Reader:
         value = node.value
         if isinstance(value, bool) or not isinstance(value, int | float):
             self._refuse(node, "is no number", "write numbers such as 0.5")
-        number = float(value)
+        try:
+            number = float(value)
+        except OverflowError:
+            number = math.inf
+        if math.isinf(number):
+            self._refuse(node, "is too large", "write numbers such as 0.5")
         return lambda signals: number
 
     def _name(self, node: ast.Name) -> Code:
@@ -291,9 +318,10 @@ class _Reader:
             if len(node.args) == 1 and isinstance(node.args[0], ast.Name):
                 length = self._lengths.get(node.args[0].id)
                 return Given(length, code, "every", is_whole=True)
+        code = self.code(node)  # refuses what is too large
         number = node.value if isinstance(node, ast.Constant) else None
         fixed = float(number) if isinstance(number, int | float) else None
-        return Given(None, self.code(node), None, fixed)
+        return Given(None, code, None, fixed)
 
     def _column(self, node: ast.expr) -> int:
         return self._columns[min(node.col_offset, len(self._columns) - 1)]

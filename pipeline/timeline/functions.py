@@ -134,13 +134,20 @@ def _numbers(
 
 
 def _each(function: Callable[[float], float]) -> Callable[[Value], Value]:
-    """A function of one number, for each on its own: the last bit does not depend on the others."""
+    """A function of one number, for each on its own: the last bit does not depend on the others.
+
+    Of what is infinite it is no number, which is told later, with its frame.
+    """
+
+    def one_of(value: float) -> float:
+        """For one number."""
+        return function(value) if math.isfinite(value) else math.nan
 
     def apply(value: Value) -> Value:
         """For each on its own."""
         if np.ndim(value) == 0:
-            return function(float(value))
-        return np.array([function(float(one)) for one in value])
+            return one_of(float(value))
+        return np.array([one_of(float(one)) for one in value])
 
     return apply
 

@@ -97,7 +97,7 @@ def places_of(text: str, file: str) -> Places:
     headers: dict[Table, Place] = {}
     counts: dict[str, int] = {}
     table: Table = ()
-    lines = tuple(text.splitlines())
+    lines = tuple(text.split("\n"))  # as TOML counts them: other separators may stand in texts
     for number, line in enumerate(lines, start=1):
         header = _HEADER.match(line)
         if header is not None:

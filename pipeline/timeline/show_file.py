@@ -91,12 +91,14 @@ def _tables(text: str, file: str) -> dict[str, Any]:
     """The tables of a TOML file."""
     try:
         return tomllib.loads(text)
-    except (tomllib.TOMLDecodeError, RecursionError) as error:
+    except (ValueError, RecursionError) as error:  # plain ones are of numbers with many digits
         found = _AT.search(str(error))
         place = Place(file, int(found[1]), int(found[2])) if found else Place(file)
         if "(at end of document)" in str(error):
-            place = Place(file, max(1, len(text.splitlines())))
+            place = Place(file, max(1, len(text.rstrip("\n").split("\n"))))
         reason = _AT.sub("", str(error)).replace(" (at end of document)", "")
+        if not isinstance(error, tomllib.TOMLDecodeError):
+            reason = reason.partition(";")[0]  # without Python's own remedy
         raise place.error(
             f"no TOML ({reason[:1].lower()}{reason[1:]}); texts stand in quotes, lists in brackets"
         ) from error
@@ -112,6 +114,9 @@ def _beats(tables: Mapping[str, Any], places: Places) -> Heard | None:
     beside = Path(places.file).parent / name
     try:
         return read_beats(beside if beside.is_file() else Path(name))
+    except OSError as error:  # a name that no file can have
+        reason = str(error.strerror).lower()
+        raise place.error(f"beats = {name[:30]!r}: {reason}; write the name of a file") from error
     except TrimotionError as error:
         raise place.error(error) from error
 

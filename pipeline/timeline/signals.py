@@ -18,6 +18,8 @@ NUMBERS = ("t", "f", "b", "bar", "bpm", "shot", "progress")
 """Variables that are no strengths and no moments."""
 VARIABLES = (*NUMBERS, *STRENGTHS, *EVENTS)
 """All variables."""
+MOST_STEPS = 2000
+"""Places on either side of a frame at which a smoothed strength is looked at."""
 NEVER = np.inf
 """How long ago a moment was that has not come yet [s]."""
 
@@ -95,7 +97,8 @@ class Signals:
         envelope = self._heard.envelope(STRENGTHS[name])
         if smooth <= 0.0:
             return np.asarray(envelope.at(self.times))
-        steps = np.linspace(-0.5, 0.5, 2 * max(2, round(smooth * envelope.rate / 2)) + 1)
+        half = min(max(2, round(smooth * envelope.rate / 2)), MOST_STEPS)
+        steps = np.linspace(-0.5, 0.5, 2 * half + 1)
         weights = 1.0 + np.cos(2 * np.pi * steps)
         spread = np.asarray(envelope.at(self.times[:, None] + smooth * steps))
         return np.asarray((spread * weights).sum(axis=1) / weights.sum())

@@ -19,6 +19,10 @@ SPAN_FORM = "write 2s, 250ms, 12 frames, 1 beat or 4 bars"
 """How spans of time are written, for messages."""
 
 
+MOST = 10**9
+"""Seconds, frames, beats and bars beyond all films: more are a mistake."""
+
+
 class Unit(Enum):
     """What a time is counted in."""
 
@@ -94,7 +98,7 @@ def parse_when(text: str) -> When:
     for form, unit in ((_FRAME, Unit.FRAMES), (_BEAT, Unit.BEATS)):
         match = form.fullmatch(plain)
         if match is not None:
-            return When(Span(Fraction(match[1]), unit))
+            return When(Span(_amount(match[1]), unit))
     match = _SPAN.fullmatch(plain)
     if match is not None:
         span = parse_span(plain)
@@ -123,7 +127,7 @@ def parse_span(text: str) -> Span:
     match = _SPAN.fullmatch(plain)
     if match is None:
         raise ValueError(f"{text!r} is no length of time; {SPAN_FORM}")
-    amount, unit = Fraction(match[1]), match[2]
+    amount, unit = _amount(match[1]), match[2]
     if unit == "ms":
         return Span(amount / 1000, Unit.SECONDS)
     units = {"s": Unit.SECONDS, "f": Unit.FRAMES, "be": Unit.BEATS, "ba": Unit.BARS}
@@ -134,28 +138,40 @@ def _clock(plain: str) -> When | None:
     match = _CLOCK.fullmatch(plain)
     if match is None:
         return None
-    minutes, seconds = int(match[2]), Fraction(match[3])
+    minutes, seconds = _amount(match[2]), _amount(match[3])
     if seconds >= 60 or (match[1] and minutes >= 60):
         raise ValueError(f"{plain!r}: minutes and seconds of a clock go up to 59; write 1:30")
-    total = int(match[1] or 0) * 3600 + minutes * 60 + seconds
-    return When(Span(Fraction(total), Unit.SECONDS))
+    total = _amount(match[1] or "0") * 3600 + minutes * 60 + seconds
+    return When(Span(total, Unit.SECONDS))
+
+
+def _amount(digits: str) -> Fraction:
+    """The number that digits are.
+
+    Raises:
+        ValueError: If no film is that long.
+    """
+    if len(digits.partition(".")[0].lstrip("0")) > len(str(MOST)) or Fraction(digits) > MOST:
+        short = digits if len(digits) <= 20 else f"{digits[:17]}..."
+        raise ValueError(f"{short}: no film is that long; write a shorter time")
+    return Fraction(digits)
 
 
 def _bar(plain: str) -> When | None:
     match = _BAR.fullmatch(plain)
     if match is None:
         return None
-    bar, beat = int(match[1]), Fraction(match[2] or 1)
+    bar, beat = _amount(match[1]), _amount(match[2] or "1")
     if bar < 1 or beat < 1:
         raise ValueError(f"{plain!r}: bars and the beats of a bar count from 1; write bar 1")
-    return When(Span(Fraction(bar - 1), Unit.BARS), beat - 1)
+    return When(Span(bar - 1, Unit.BARS), beat - 1)
 
 
 def _share(plain: str) -> When | None:
     match = _SHARE.fullmatch(plain)
     if match is None:
         return None
-    share = Fraction(match[2]) / 100
+    share = _amount(match[2]) / 100
     if share > 1:
         raise ValueError(f"{plain!r}: the film ends at 100%; write end")
     return When(START.span, share=share, is_on_bar=bool(match[1]))

@@ -42,16 +42,17 @@ def _differing(
             yield from _differing(one, other, options)
         else:
             flag = f"--{option.flag}" if option is not None else NAMES.get(name, name)
-            yield f"{flag} {_shown(other)} instead of {_shown(one)}"
+            empty = "none" if name in NAMES else "auto"
+            yield f"{flag} {_shown(other, empty)} instead of {_shown(one, empty)}"
 
 
-def _shown(value: Any) -> str:
+def _shown(value: Any, empty: str = "auto") -> str:
     """A value as short as a message needs it, as the command line takes it."""
     if isinstance(value, Mapping) and CLASS in value:
         pairs = (f"{key}={_shown(entry)}" for key, entry in value.items() if key != CLASS)
         return ":".join(filter(None, (str(value[CLASS]), ",".join(pairs))))
     if value == [] or (isinstance(value, list) and isinstance(value[0], Mapping)):
-        return " ".join(map(_shown, value)) or "auto"
+        return " ".join(map(_shown, value)) or empty
     if isinstance(value, Mapping):
         return "(a picture)"
     text = "none" if value is None else str(value)

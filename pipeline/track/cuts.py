@@ -16,7 +16,7 @@ def read_cuts(path: Path) -> frozenset[int]:
     remedy = "list the first frame of each new shot, as JSON [40, 76] or one number a line"
     try:
         text = read_text(path)
-    except (OSError, UnicodeDecodeError) as error:
+    except (OSError, ValueError) as error:
         raise MediaError(path, f"the list of cuts cannot be read ({error})", remedy) from error
     try:
         numbers = json.loads(text) if text.lstrip().startswith("[") else text.split()

@@ -8,15 +8,13 @@ from stages.hearing.formats.json_form import as_json, from_json
 from stages.hearing.formats.lines import as_labels, from_lines
 from stages.hearing.formats.midi import from_midi
 from stages.hearing.heard import Heard
-from stages.media.text_file import read_text
+from stages.media.text_file import bounded_bytes, text_of
 from stages.media.writing.commit import write_file
 from warp_kernels.errors import MediaError
 
 _REMEDY = (
     "give the JSON of trimotion listen, one time a line, labels of Audacity, CSV, MIDI or an EDL"
 )
-MOST_BYTES = 256 * 2**20
-"""Larger files hold no beats."""
 
 
 def read_beats(path: Path, rate: Fraction | None = None) -> Heard:
@@ -30,13 +28,10 @@ def read_beats(path: Path, rate: Fraction | None = None) -> Heard:
         MediaError: If it cannot be read or is none of these.
     """
     try:
-        if path.stat().st_size > MOST_BYTES:
-            raise MediaError(path, "is too large for a file of beats", _REMEDY)
-        with path.open("rb") as file:
-            is_midi = file.read(4) == b"MThd"
-        if is_midi:
-            return from_midi(path.read_bytes())
-        text = read_text(path)
+        content = bounded_bytes(path)
+        if content.startswith(b"MThd"):
+            return from_midi(content)
+        text = text_of(content)
         if text.lstrip().startswith(("{", "[")):
             return from_json(text)
         if path.suffix.lower() == ".edl" or text.lstrip().startswith("TITLE:"):

@@ -11,6 +11,8 @@ _MARKS = (
     (codecs.BOM_UTF16_BE, "utf-16"),
 )
 """Byte order marks and the encodings that they tell of."""
+MOST_BYTES = 256 * 2**20
+"""Larger files are no texts that people wrote."""
 
 
 def read_text(path: Path) -> str:
@@ -21,9 +23,38 @@ def read_text(path: Path) -> str:
 
     Raises:
         OSError: If it cannot be read.
+        ValueError: If it is in another encoding, or too large.
+    """
+    return text_of(bounded_bytes(path))
+
+
+def bounded_bytes(path: Path, most: int = MOST_BYTES) -> bytes:
+    """What a file holds, read once: it may be a pipe or a device that never ends.
+
+    Args:
+        path: The file.
+        most: How many bytes a text may have.
+
+    Raises:
+        OSError: If it cannot be read.
+        ValueError: If it is larger.
+    """
+    with path.open("rb") as file:
+        content = file.read(most + 1)
+    if len(content) > most:
+        raise ValueError(f"it is larger than {most >> 20} MiB")
+    return content
+
+
+def text_of(content: bytes) -> str:
+    """The text in a file of UTF-8 or UTF-16, as `read_text` gives it.
+
+    Args:
+        content: What the file holds.
+
+    Raises:
         UnicodeDecodeError: If it is in another encoding.
     """
-    content = path.read_bytes()
     text = content.decode(_encoding_of(content))
     return text.replace("\r\n", "\n").replace("\r", "\n")
 

@@ -1,7 +1,6 @@
 """Our own file of what was heard, JSON; also a bare list of times."""
 
 import json
-import math
 from collections.abc import Mapping
 from itertools import pairwise
 from typing import Any
@@ -15,6 +14,12 @@ DIGITS = 4
 """Decimals of times [s] and of strengths: a tenth of a millisecond, a ten-thousandth."""
 MOST_METER = 32
 """Beats of a bar at most; beyond it a number is a mistake."""
+MOST_TIME = 1e9
+"""Seconds, and beats a minute, at most; beyond it a number is a mistake too."""
+MOST_RATE = 1e6
+"""Values a second at most [Hz]."""
+LEAST = 1e-6
+"""Beats a minute, values a second, and seconds from one time to the next, at least."""
 
 
 def as_json(heard: Heard) -> str:
@@ -72,14 +77,17 @@ def from_json(text: str) -> Heard:
     if not isinstance(meter, int) or not 1 <= meter <= MOST_METER:
         raise ValueError(f"meter {meter!r} must be a whole number from 1 to {MOST_METER}")
     bpm = found.get("bpm")
-    if bpm is not None and not 0 < _number(bpm, "bpm") < math.inf:
+    if bpm is not None and _number(bpm, "bpm") < LEAST:
         raise ValueError(f"bpm {bpm!r} must be above 0")
+    marks = found.get("sections", [])
+    if not isinstance(marks, list):
+        raise ValueError("sections is not a list")
     return Heard(
         duration,
         usual_bpm(times["beats"]) if bpm is None else float(bpm),
         **times,
         envelopes=envelopes,
-        sections=tuple(_mark(one) for one in found.get("sections", ())),
+        sections=tuple(_mark(one) for one in marks),
         meter=meter,
     )
 
@@ -89,8 +97,10 @@ def _rounded(values: np.ndarray) -> list[float]:
 
 
 def _number(value: object, name: str) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+    if isinstance(value, bool) or not isinstance(value, int | float) or value != value:  # NaN
         raise ValueError(f"{name} holds {value!r}, which is not a number")
+    if abs(value) > MOST_TIME:
+        raise ValueError(f"{name} holds {str(value)[:20]}, which is too large")
     return float(value)
 
 
@@ -100,7 +110,7 @@ def _times(found: Mapping[str, Any], name: str) -> np.ndarray:
         raise ValueError(f"{name} is not a list")
     times = [_number(value, name) for value in values]
     for before, after in pairwise(times):
-        if after <= before:
+        if after - before < LEAST:
             raise ValueError(f"{name} go back from {before:g} to {after:g} s")
     return np.array(times, dtype=float)
 
@@ -116,8 +126,10 @@ def _envelope(found: object, name: str) -> Contour:
     if not isinstance(found, dict) or not isinstance(found.get("values"), list):
         raise ValueError(f"envelope {name} has no list of values")
     rate = _number(found.get("rate"), f"rate of envelope {name}")
-    if rate <= 0:
-        raise ValueError(f"rate of envelope {name} is {rate:g}, which is not above 0")
+    if not LEAST <= rate <= MOST_RATE:
+        raise ValueError(
+            f"rate of envelope {name} is {rate:g}, not above 0 and up to {MOST_RATE:g}"
+        )
     values = [_number(value, f"envelope {name}") for value in found["values"]]
     return Contour(rate, np.clip(np.array(values, dtype=np.float32), 0, 1))
 

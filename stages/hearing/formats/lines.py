@@ -6,7 +6,6 @@ A word that is a number is the place in the bar (`1` is a downbeat; ours are `ba
 section, unless all lines have the same one.
 """
 
-import math
 import re
 from dataclasses import dataclass
 
@@ -20,6 +19,8 @@ _ONSETS = frozenset({"o", "onset"})
 _IN_BAR = re.compile(r"(?:\d+\.)?(\d{1,2})|beat\s*(\d{1,2})", re.IGNORECASE)
 _MOST_IN_BAR = 16
 """Larger numbers count the beats of the whole piece."""
+_MOST_TIME = 1e9
+"""Seconds; larger numbers are no times."""
 _CLOCK = re.compile(r"(?:(\d+):)?(\d+):(\d+(?:\.\d*)?)")
 
 
@@ -137,19 +138,20 @@ def _fields(row: str) -> list[str]:
 
 
 def seconds_of(text: str) -> float | None:
-    """A time as a number of seconds; None if it is none, or below 0.
+    """A time as a number of seconds; None if it is none, below 0, or beyond all sounds.
 
     Args:
         text: `12.5`, `1:02.5` or `1:00:02.5`.
     """
     clock = _CLOCK.fullmatch(text)
     if clock:
-        return int(clock[1] or 0) * 3600 + int(clock[2]) * 60 + float(clock[3])
-    try:
-        time = float(text)
-    except ValueError:
-        return None
-    return time if math.isfinite(time) and time >= 0 else None
+        time = float(clock[1] or 0) * 3600 + float(clock[2]) * 60 + float(clock[3])
+    else:
+        try:
+            time = float(text)
+        except ValueError:
+            return None
+    return time if 0 <= time <= _MOST_TIME else None
 
 
 def _place(word: str) -> int | None:
