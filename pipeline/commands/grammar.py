@@ -24,7 +24,7 @@ commands:
   info FILE                  what a file is: a source or a mesh track
   measure SOURCE OUTPUT      how close an output is to its source, and how coherent
   styles [NAME]              all styles and their parameters, or one; --sheet draws them
-  timeline SHOW.toml --check CLIP      what a timeline does when, without solving
+  timeline SHOW.toml|NAME --check CLIP   what a timeline does when, without solving
   completion bash|zsh|fish   a script by which a shell completes all of this
   help [COMMAND]             this text, or the options of a command
 
