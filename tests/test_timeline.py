@@ -312,3 +312,17 @@ def test_beats_come_from_a_file_that_the_timeline_names(tmp_path: Path) -> None:
     clock = Clock(Fraction(10), 0, 40, timeline.beats)
     show = Show(timeline, clock, (Look(), *(section.look for section in timeline.sections)))
     assert [show.at(k).scene.opacity for k in (11, 22)] == [1.0, 0.0]
+
+
+@pytest.mark.parametrize(("meter", "bars"), [("", (5, 29)), ("meter = 3\n", (5, 23))])
+def test_a_list_of_beats_has_bars_that_are_heard(
+    meter: str, bars: tuple[int, int], tmp_path: Path
+) -> None:
+    (tmp_path / "song.txt").write_text("".join(f"{0.5 + 0.6 * n:g}\n" for n in range(6)))
+    text = f'{meter}beats = "song.txt"\n[curves]\nopacity = "1 - downbeat"\n'
+    (tmp_path / "show.toml").write_text(text)
+    timeline = read_timeline(str(tmp_path / "show.toml"), Look())
+    clock = Clock(Fraction(10), 0, 40, timeline.beats)
+    show = Show(timeline, clock, (Look(), *(section.look for section in timeline.sections)))
+    assert tuple(k for k in range(40) if show.at(k).scene.opacity == 0.0) == bars
+    assert clock.bar_name(bars[1] / 10) == "2"
