@@ -326,3 +326,14 @@ def test_a_list_of_beats_has_bars_that_are_heard(
     show = Show(timeline, clock, (Look(), *(section.look for section in timeline.sections)))
     assert tuple(k for k in range(40) if show.at(k).scene.opacity == 0.0) == bars
     assert clock.bar_name(bars[1] / 10) == "2"
+
+
+def test_a_shipped_timeline_is_printed_and_can_be_read(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["timeline", "pulse"]) == 0
+    (tmp_path / "mine.toml").write_text(capsys.readouterr().out, "utf-8")
+    assert len(read_timeline(str(tmp_path / "mine.toml"), Look()).sections) == 3
+    for more in (["pulse", "-o", str(tmp_path / "strip.png")], [str(tmp_path / "mine.toml")]):
+        assert main(["timeline", *more]) == 2
+        assert "--check CLIP" in capsys.readouterr().err

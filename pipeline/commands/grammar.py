@@ -316,11 +316,16 @@ def _add_timeline(commands: Any) -> None:
         commands,
         "timeline",
         "Print what a timeline does when, and draw it above the film; nothing is solved.",
-        "trimotion timeline SHOW.toml|NAME --check CLIP [-o STRIP.png]",
+        "trimotion timeline SHOW.toml|NAME --check CLIP [-o STRIP.png]\n"
+        "       trimotion timeline NAME",
     )
     parser.add_argument("show", metavar="SHOW.toml|NAME", type=text_value, help="the timeline")
     parser.add_argument(
-        "--check", dest="source", metavar="CLIP", type=text_value, required=True, help="the film"
+        "--check",
+        dest="source",
+        metavar="CLIP",
+        type=text_value,
+        help="the film; without it the text of a shipped timeline is printed",
     )
     parser.add_argument(
         "-o", "--output", metavar="STRIP.png", type=text_value, help="write a picture of it"
