@@ -202,10 +202,12 @@ def run_completion(arguments: argparse.Namespace) -> None:
     """
     from pipeline.commands.completion import SHELLS
     from pipeline.commands.completion.words import words_of
+    from pipeline.timeline.timeline import shipped_timelines
     from warp_kernels.styles import STYLES
 
     known = build_parser().commands()
-    listed = {"help": tuple(known), "styles": tuple(STYLES)}
+    shipped = tuple(shipped_timelines())
+    listed = {"help": tuple(known), "styles": tuple(STYLES), "timeline": shipped}
     print(SHELLS[arguments.shell](words_of(known, listed)), end="")
 
 

@@ -337,3 +337,28 @@ def test_beats_come_from_a_file_that_the_timeline_names(tmp_path: Path) -> None:
     clock = Clock(Fraction(10), 0, 40, timeline.beats)
     show = Show(timeline, clock, (Look(), *(section.look for section in timeline.sections)))
     assert [show.at(k).scene.opacity for k in (11, 22)] == [1.0, 0.0]
+
+
+@pytest.mark.parametrize(("meter", "bars"), [("", (5, 29)), ("meter = 3\n", (5, 23))])
+def test_a_list_of_beats_has_bars_that_are_heard(
+    meter: str, bars: tuple[int, int], tmp_path: Path
+) -> None:
+    (tmp_path / "song.txt").write_text("".join(f"{0.5 + 0.6 * n:g}\n" for n in range(6)))
+    text = f'{meter}beats = "song.txt"\n[curves]\nopacity = "1 - downbeat"\n'
+    (tmp_path / "show.toml").write_text(text)
+    timeline = read_timeline(str(tmp_path / "show.toml"), Look())
+    clock = Clock(Fraction(10), 0, 40, timeline.beats)
+    show = Show(timeline, clock, (Look(), *(section.look for section in timeline.sections)))
+    assert tuple(k for k in range(40) if show.at(k).scene.opacity == 0.0) == bars
+    assert clock.bar_name(bars[1] / 10) == "2"
+
+
+def test_a_shipped_timeline_is_printed_and_can_be_read(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["timeline", "pulse"]) == 0
+    (tmp_path / "mine.toml").write_text(capsys.readouterr().out, "utf-8")
+    assert len(read_timeline(str(tmp_path / "mine.toml"), Look()).sections) == 3
+    for more in (["pulse", "-o", str(tmp_path / "strip.png")], [str(tmp_path / "mine.toml")]):
+        assert main(["timeline", *more]) == 2
+        assert "--check CLIP" in capsys.readouterr().err

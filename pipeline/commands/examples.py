@@ -47,6 +47,7 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
     "timeline": (
         "timeline show.toml --check clip.mp4",
         "timeline pulse --check clip.mp4 -o strip.png",
+        "timeline pulse > mine.toml",
     ),
     "completion": (
         "completion bash > ~/.local/share/bash-completion/completions/trimotion",

@@ -24,7 +24,7 @@ commands:
   info FILE                  what a file is: a source or a mesh track
   measure SOURCE OUTPUT      how close an output is to its source, and how coherent
   styles [NAME]              all styles and their parameters, or one; --sheet draws them
-  timeline SHOW.toml --check CLIP      what a timeline does when, without solving
+  timeline SHOW.toml|NAME --check CLIP   what a timeline does when, without solving
   completion bash|zsh|fish   a script by which a shell completes all of this
   help [COMMAND]             this text, or the options of a command
 
@@ -316,11 +316,16 @@ def _add_timeline(commands: Any) -> None:
         commands,
         "timeline",
         "Print what a timeline does when, and draw it above the film; nothing is solved.",
-        "trimotion timeline SHOW.toml|NAME --check CLIP [-o STRIP.png]",
+        "trimotion timeline SHOW.toml|NAME --check CLIP [-o STRIP.png]\n"
+        "       trimotion timeline NAME",
     )
     parser.add_argument("show", metavar="SHOW.toml|NAME", type=text_value, help="the timeline")
     parser.add_argument(
-        "--check", dest="source", metavar="CLIP", type=text_value, required=True, help="the film"
+        "--check",
+        dest="source",
+        metavar="CLIP",
+        type=text_value,
+        help="the film; without it the text of a shipped timeline is printed",
     )
     parser.add_argument(
         "-o", "--output", metavar="STRIP.png", type=text_value, help="write a picture of it"

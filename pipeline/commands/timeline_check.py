@@ -14,6 +14,7 @@ from pipeline.options.build import build_job
 from pipeline.timeline.clock import Clock
 from pipeline.timeline.show import Placed, Show
 from pipeline.timeline.staging import show_of, with_timeline
+from pipeline.timeline.timeline import TEMPLATES, shipped_timelines
 from pipeline.track import refuse_track
 from stages.look.sheet_strip import Band, Graph, strip_of
 from stages.media import (
@@ -63,7 +64,7 @@ class OverTime:
 
 
 def check_timeline(arguments: argparse.Namespace) -> str:
-    """Look at a timeline beside its film.
+    """Look at a timeline beside its film, or at the text of a shipped one.
 
     Args:
         arguments: What the user gave.
@@ -72,8 +73,10 @@ def check_timeline(arguments: argparse.Namespace) -> str:
         What is told of it.
 
     Raises:
-        TrimotionError: As `animate` does.
+        TrimotionError: As `animate` does, or if there is no film where one is needed.
     """
+    if arguments.source is None:
+        return _text_of(arguments)
     given = {k: v for k, v in vars(arguments).items() if k not in ("show", "output", "overwrite")}
     job = with_timeline(build_job({**given, "timeline": arguments.show}))
     source = job.solve.source
@@ -89,6 +92,17 @@ def check_timeline(arguments: argparse.Namespace) -> str:
     if arguments.output is not None:
         _draw(show, curves, info, job.solve.read, Path(arguments.output), arguments.overwrite)
     return _as_json(show, curves) if arguments.json else _as_table(show, curves, source)
+
+
+def _text_of(arguments: argparse.Namespace) -> str:
+    """The text of a shipped timeline, from which others begin."""
+    name = arguments.show
+    if name not in shipped_timelines() or arguments.output is not None or arguments.json:
+        raise OptionError(
+            f"timeline {name}: needs the film, too: --check CLIP; without it the text of a shipped "
+            f"one is printed ({', '.join(shipped_timelines())})"
+        )
+    return (TEMPLATES / f"{name}.toml").read_text("utf-8").rstrip("\n")
 
 
 def _end_of(show: Show, number: int) -> float:

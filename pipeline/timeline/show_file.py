@@ -84,6 +84,8 @@ def parse_timeline(text: str, file: str, look: Look) -> Timeline:
     curves = read_curves(tables.get("curves", {}), ("curves",), looks, places)
     bpm, meter = _tempo(tables, places)
     beats = _beats(tables, places)
+    if beats is not None:
+        beats = beats.with_downbeats(meter if "meter" in tables else None)
     return Timeline(file, tuple(sections), curves, bpm, meter, beats)
 
 
@@ -122,7 +124,7 @@ def _beats(tables: Mapping[str, Any], places: Places) -> Heard | None:
 
 
 def _tempo(tables: Mapping[str, Any], places: Places) -> tuple[float | None, int]:
-    """Tempo and meter where nothing is heard."""
+    """Tempo and meter where nothing else tells them."""
     bpm, meter = tables.get("bpm"), tables.get("meter", 4)
     top: Table = ()
     is_number = isinstance(bpm, int | float) and not isinstance(bpm, bool)

@@ -86,6 +86,19 @@ class Heard:
         """Whether beats and bars can be asked for."""
         return len(self.beats) > 1 or self.bpm is not None
 
+    def with_downbeats(self, meter: int | None = None) -> "Heard":
+        """The same with the first beats of bars, where fewer than two of them are known.
+
+        Args:
+            meter: Beats of a bar; None for those that are known.
+        """
+        if len(self.downbeats) > 1 or not len(self.beats):
+            return self
+        meter, first = meter or self.meter, 0
+        if len(self.downbeats):
+            first = int(np.abs(self.beats - self.downbeats[0]).argmin())
+        return replace(self, downbeats=self.beats[first::meter], meter=meter)
+
     def moved(self, by: float) -> "Heard":
         """The same sound, started later.
 
