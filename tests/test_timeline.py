@@ -362,3 +362,11 @@ def test_a_shipped_timeline_is_printed_and_can_be_read(
     for more in (["pulse", "-o", str(tmp_path / "strip.png")], [str(tmp_path / "mine.toml")]):
         assert main(["timeline", *more]) == 2
         assert "--check CLIP" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("name", shipped_timelines())
+def test_a_still_has_no_second_section(name: str) -> None:
+    """Shipped timelines are of films: the message says so, for nobody can put theirs in order."""
+    text = (TEMPLATES / f"{name}.toml").read_text("utf-8")
+    with pytest.raises(OptionError, match="one frame"):
+        show_of_text(text, clock=Clock(CLOCK.rate, 0, 1, CLOCK.heard))
