@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from stages.frame import Frame
+from stages.hand.locks import NO_LOCKS, Locks
 from stages.layouts import Layout
 from stages.mesh import Mesh
 from stages.motion.advect import Carried
@@ -84,6 +85,7 @@ class Triangulator:
         device.expect(limiting_kernels(device, options.model, fitted))
         self._even = self._bench(weighted=False)
         self._weighted: Bench | None = None
+        self._locks = NO_LOCKS
         self._use(self._even)
         self._solved: Snapshot | None = None  # with energies by the colours that are optimised
         shared = fitted is options.model and options.space == "rgb"
@@ -110,6 +112,14 @@ class Triangulator:
         self._workspace, self._appraiser = bench.workspace, bench.appraiser
         self._approximator = bench.approximator
 
+    def _hold(self, locks: Locks) -> None:
+        """Hold fast from now on what a person holds, and nothing else."""
+        if self._locks is not locks:
+            self._locks = locks
+            for bench in (self._even, self._weighted):
+                if bench is not None:
+                    bench.appraiser.hold(locks)
+
     def refine_by(self, refine: RefineOptions) -> None:
         """Have other numbers of triangles, or bounds of the error, from the next frame on.
 
@@ -126,6 +136,7 @@ class Triangulator:
             layout: Makes the first mesh.
             rng: Randomness of the layout.
         """
+        self._hold(NO_LOCKS)
         self._load(frame)
         refine = self._options.refine
 
@@ -154,6 +165,7 @@ class Triangulator:
         if frame.weights is not None:
             if self._weighted is None:
                 self._weighted = self._bench(weighted=True)
+                self._weighted.appraiser.hold(self._locks)
             bench = self._weighted
             bench.load(pixels, frame.weights)
         self._use(bench)
@@ -169,6 +181,7 @@ class Triangulator:
             earlier: What was given for the previous frame, here or to `recall`: by it is told where
                 the picture boils, and colours keep to its; None for neither.
         """
+        self._hold(seed.locks)
         self._load(frame)
         iterations = self._options.frame_iterations
         rounds = max(1, iterations // FRAME_ROUND - 1)
@@ -213,7 +226,9 @@ class Triangulator:
             each: Iterations after each of them.
         """
         refine = self._options.refine
-        count = refine.triangles if refine.quality is None else mesh.triangle_count
+        count = mesh.triangle_count
+        if refine.quality is None:
+            count = refine.triangles + self._locks.extra(mesh)
         boiling = int(unrest.boiling(mesh).sum())
         renewal = self._approximator.topology.renewal
         for number in range(1, rounds + 1):
@@ -254,10 +269,13 @@ class Triangulator:
         return None
 
     def _followed_count(self, mesh: Mesh) -> int:
-        """How many triangles a later frame shall have; a quality lets their number drift."""
+        """How many triangles a later frame shall have; a quality lets their number drift.
+
+        What is held fast comes on top.
+        """
         refine = self._options.refine
         if refine.quality is None:
-            return refine.triangles
+            return refine.triangles + self._locks.extra(mesh)
         missed = self._rmse(mesh) / refine.quality
         if abs(missed - 1) < CALM_QUALITY:
             return mesh.triangle_count
@@ -335,6 +353,7 @@ class Triangulator:
             energies=energies,
             counts=counts,
             limits=None if limits is None else limits[owners],
+            locks=self._locks.within(mesh),
         )
 
 

@@ -78,6 +78,7 @@ class SolveKeywords(AnimatorKeywords, SourceKeywords, total=False):
 
     preset: Name | None
     timeline: Name | None
+    edits: Any
     jobs: int
     overwrite: bool
     resume: bool

@@ -8,6 +8,9 @@ from stages.motion.advect import Carried
 REST_FIRMNESS, FIRMEST = 1.5, 4.0
 """Where weights lead triangles elsewhere the spring grows with this power of the mean weight beside
 the median one, up to so many times."""
+LOCK = 1e12
+"""Strength of the spring of what a person holds fast [code value^2]: whatever pulls at it moves it
+by less than the dead band."""
 
 
 def springs_of(
@@ -33,6 +36,8 @@ def springs_of(
     springs[known, 2] = strength * seed.trust[old[known]]
     if weights is not None:
         springs[:, 2] *= _firmness(weights, springs[:, :2])
+    if not seed.locks.is_empty:
+        springs[np.isin(mesh.vertex_ids, seed.locks.vertices), 2] = LOCK
     return springs
 
 

@@ -85,7 +85,7 @@ class Energy:
         mesh = divide_large(mesh, goal.largest_area)
         if goal.calm:
             thin = np.flatnonzero(mesh.heights < CALM_SLIVER_HEIGHT)
-            mesh = press_slivers(mesh, thin, CALM_SLIVER_HEIGHT)
+            mesh = press_slivers(mesh, appraiser.loose(mesh, thin), CALM_SLIVER_HEIGHT)
         else:
             mesh = collapse_slivers(mesh, SLIVER_HEIGHT, most_rounds=SLIVER_ROUNDS)
         if goal.unrest is not None:
