@@ -57,9 +57,10 @@ class ShapeKeywords(DeviceKeywords, total=False):
 
 
 class PictureKeywords(ShapeKeywords, total=False):
-    """How one picture becomes triangles; weights may be an array."""
+    """How one picture becomes triangles; weights may be an array, edits a list."""
 
     weights: Any
+    edits: Any
 
 
 class AnimatorKeywords(ShapeKeywords, total=False):
@@ -164,8 +165,9 @@ DRAWN = ("styles", "output_size", "scale", "fit", "background", "device", "threa
 
 TAKEN: dict[str, Callable[[Option], bool]] = {
     **{name: COMMAND_OPTIONS[name] for name in ("animate", "solve", "render", "measure")},
-    "triangulate": _for_pictures,
-    "Animator": lambda option: _for_pictures(option) or option.group in ("triangles", "motion"),
+    "triangulate": lambda option: _for_pictures(option) or option.dest == "edits",
+    "Animator": lambda option: option.dest != "edits"
+    and (_for_pictures(option) or option.group in ("triangles", "motion")),
     "draw": lambda option: option.dest in DRAWN,
 }
 """Which options a function takes."""

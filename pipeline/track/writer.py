@@ -120,6 +120,10 @@ class TrackWriter:
             rows["topologies"] = (frame, *_packed_topology(mesh))
         if snapshot.limits is not None:
             rows["limits"] = (frame, pack(snapshot.limits, "u1"))
+        if not snapshot.locks.is_empty:
+            locks = snapshot.locks
+            held = (pack(ids, "<i8") for ids in (locks.vertices, locks.edges, locks.bare))
+            rows["locks"] = (frame, *held)
         connection = self._opened()
         with writing(self._path):
             connection.execute("BEGIN IMMEDIATE")

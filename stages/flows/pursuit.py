@@ -5,7 +5,7 @@ import numpy as np
 
 LINES = 720
 """Looked at in pictures whose short side is at most this long [px]."""
-WINDOW = 31
+WINDOW = 21
 """Side of the square around a point that is compared [px of those pictures]."""
 LEVELS = 2
 """Coarser levels that are looked at first; the estimate is close already."""
