@@ -29,7 +29,11 @@ def parse_grade(text: str) -> Grade:
             f"--grade {text}: write KEY=VALUE,..., such as exposure=0.5,saturation=0.8"
         )
     kinds = dict.fromkeys(Grade.__dataclass_fields__, "float")
-    return Grade(**parse_parameters("--grade", text, "a grade", text, kinds))
+    values = parse_parameters("--grade", text, "a grade", text, kinds)
+    try:
+        return Grade(**values)
+    except OptionError as error:
+        raise OptionError(f"--grade {text}: {error}") from error
 
 
 def parse_palette(text: str) -> Palette:
@@ -78,5 +82,5 @@ def _colors(what: str, count: int | None) -> tuple[tuple[Color, ...], bool]:
 
 def _remedy(what: str) -> str:
     """What to write instead of what is no palette."""
-    hint = nearest(what, PALETTES, "or take")
-    return f"write #123,#fa0,white, name a file that is there, {hint}"
+    hint = nearest(what, PALETTES, "take")
+    return f"{hint}, or #123,#fa0,white, or a file that is there"
