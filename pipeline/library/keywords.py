@@ -91,6 +91,8 @@ class LookKeywords(TypedDict, total=False):
     styles: str | Sequence[str]
     regions: str | Sequence[str]
     timeline: Name | None
+    palette: Name | None
+    grade: str | None
     size: str | tuple[int, int] | None
     scale: float | None
     fit: str
@@ -127,6 +129,8 @@ class DrawKeywords(DeviceKeywords, total=False):
     """How one frame is drawn."""
 
     styles: str | Sequence[str]
+    palette: Name | None
+    grade: str | None
     size: str | tuple[int, int] | None
     scale: float | None
     fit: str
@@ -160,7 +164,10 @@ def _for_pictures(option: Option) -> bool:
     return described or option.dest in ("seed", "device", "threads")
 
 
-DRAWN = ("styles", "output_size", "scale", "fit", "background", "device", "threads")
+DRAWN = (
+    *("styles", "palette", "grade", "output_size", "scale", "fit", "background"),
+    *("device", "threads"),
+)
 """Options that say how one frame is drawn."""
 
 TAKEN: dict[str, Callable[[Option], bool]] = {

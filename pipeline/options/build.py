@@ -12,6 +12,7 @@ from pipeline.options.members import parse_member, parse_region
 from pipeline.options.output import Output
 from pipeline.options.output_name import output_in
 from pipeline.options.run import Run
+from pipeline.options.tones import parse_grade, parse_palette
 from stages.media.frame_range import FrameRange
 from warp_kernels.styles import STYLES
 
@@ -59,6 +60,9 @@ def values_of(given: Mapping[str, Any]) -> dict[str, Any]:
             values[option.dest] = tuple(found) if option.is_repeatable else found[0]
     regions = given.get("regions", ())
     values["regions"] = tuple(parse_region("--region", text, STYLES) for text in regions)
+    for name, read in (("grade", parse_grade), ("palette", parse_palette)):
+        if given.get(name) is not None:
+            values[name] = read(given[name])
     return values
 
 
