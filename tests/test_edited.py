@@ -122,10 +122,14 @@ def test_another_log_is_another_job(clip: Path, whole: Path) -> None:
 
 def test_edits_that_cannot_be_made_change_nothing(clip: Path, tmp_path: Path) -> None:
     solve_to(tmp_path / "plain.mtrk", clip, "0-3")
-    refused = EditLog((Insert(2, (400.0, 9.0), 5.0), FlipEdge(99, (4.0, 9.0))))
+    refused = EditLog((Insert(2, (400.0, 9.0), 5.0), FlipEdge(COUNT - 1, (4.0, 9.0))))
     told = solve_to(tmp_path / "edited.mtrk", clip, "0-3", edits=refused)
     assert rows_of(tmp_path / "edited.mtrk") == rows_of(tmp_path / "plain.mtrk")
     assert len(told.warnings) == 1
+    assert f"edits of frame {COUNT - 1} change nothing: frames 0-3 are solved" in told.notes
+    beyond = EditLog((FlipEdge(COUNT, (4.0, 9.0)),))
+    with pytest.raises(OptionError, match=f"an edit of frame {COUNT}, and .* ends with frame 11"):
+        solve_to(tmp_path / "beyond.mtrk", clip, edits=beyond)
 
 
 def gone(clip: Path, folder: Path, edit: Edit) -> tuple[int, int]:

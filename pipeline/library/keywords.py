@@ -173,8 +173,10 @@ DRAWN = (
 TAKEN: dict[str, Callable[[Option], bool]] = {
     **{name: COMMAND_OPTIONS[name] for name in ("animate", "solve", "render", "measure")},
     "triangulate": lambda option: _for_pictures(option) or option.dest == "edits",
-    "Animator": lambda option: option.dest != "edits"
-    and (_for_pictures(option) or option.group in ("triangles", "motion")),
+    "Animator": lambda option: (
+        option.dest != "edits"
+        and (_for_pictures(option) or option.group in ("triangles", "motion"))
+    ),
     "draw": lambda option: option.dest in DRAWN,
 }
 """Which options a function takes."""

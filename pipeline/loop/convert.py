@@ -11,6 +11,7 @@ from pipeline.envelope import MeshFrom, Prepared, Solved
 from pipeline.look.drawing import Drawing, check_drawing
 from pipeline.look.source_pictures import source_pictures
 from pipeline.loop.attention import Attention
+from pipeline.loop.edit_frames import check_edits
 from pipeline.loop.edited import EditedFrames
 from pipeline.loop.motion import check_cuts, open_around
 from pipeline.loop.prepare import prepared
@@ -53,6 +54,7 @@ def convert(job: Job, fitted: ColorModel, progress: Progress) -> Animated:
     with open_around(options, None if past is None else past.reached) as decoder:
         info = decoder.info
         check_cuts(options.cuts, options.source, info)
+        check_edits(options, info)
         if draws:
             check_drawing(job, info)
         device = Device(job.run.device, job.run.threads, progress.kernels)
@@ -171,6 +173,6 @@ class _Writer:
 
     def __call__(self, solved: Solved) -> None:
         if self._track is not None and not solved.is_stored:
-            self._track.write(solved.snapshot, solved.shot)
+            self._track.write(solved.snapshot, solved.shot, more=solved.has_more)
         if self._drawing is not None:
             self._drawing.draw(solved)

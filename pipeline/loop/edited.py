@@ -86,8 +86,9 @@ class EditedFrames:
 
     def _given(self) -> Iterator[Solved]:
         """Hand on what waits: it is final."""
-        for one in self._waiting:
-            yield one.ready.solved(one.snapshot, keeps_picture=self._keeps)
+        for left, one in zip(range(len(self._waiting))[::-1], self._waiting, strict=True):
+            solved = one.ready.solved(one.snapshot, keeps_picture=self._keeps)
+            yield replace(solved, has_more=left > 0)
         self._waiting = []
 
     def _edit(self) -> Iterator[Solved]:

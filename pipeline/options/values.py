@@ -25,7 +25,6 @@ _RULES: dict[str, tuple[Callable[[str], Any], str, str]] = {
 NAMES: dict[str, Callable[[str], Any]] = {
     "str": str,
     "Path": Path,
-    "EditLog": lambda name: imported("pipeline.edit_log.json_lines:read_log")(Path(name)),
     "ndarray": lambda name: imported("stages.masks.gray:read_gray")(name),
 }
 """Types whose values are any text, among them names of files."""

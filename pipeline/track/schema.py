@@ -83,7 +83,7 @@ LATER = {
     "edit TEXT NOT NULL)",
     "edit_places": "CREATE TABLE edit_places (step INTEGER PRIMARY KEY, number INTEGER NOT NULL)",
 }
-"""Tables that tracks of earlier programs lack."""
+"""Tables that tracks of earlier programs lack; all but the first are made when they are needed."""
 
 TABLES = ("frames", "meshes", "topologies", "limits", "locks")
 """The tables whose rows belong to frames, `frame` first."""
@@ -103,7 +103,7 @@ def create(path: Path) -> sqlite3.Connection:
         connection.executescript(
             f"PRAGMA application_id = {APPLICATION}; PRAGMA user_version = {FORMAT};"
             "PRAGMA synchronous = NORMAL;"
-            f"BEGIN; {SCHEMA} {'; '.join(LATER.values())}; COMMIT;"
+            f"BEGIN; {SCHEMA} {LATER['limits']}; COMMIT;"
         )
     return connection
 
@@ -154,10 +154,14 @@ def open_existing(path: Path) -> sqlite3.Connection:
 
 
 def complete(connection: sqlite3.Connection) -> None:
-    """Give a track of an earlier program, with which a run goes on, the tables that it lacks."""
-    for table, statement in LATER.items():
-        if not has_table(connection, table):
-            connection.execute(statement)
+    """Give a track of an earlier program, with which a run goes on, the table that it lacks."""
+    need_table(connection, "limits")
+
+
+def need_table(connection: sqlite3.Connection, table: str) -> None:
+    """Make a table of `LATER` if it is not there."""
+    if not has_table(connection, table):
+        connection.execute(LATER[table])
 
 
 def has_table(connection: sqlite3.Connection, table: str, schema: str = "main") -> bool:
