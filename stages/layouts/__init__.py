@@ -31,7 +31,7 @@ LAYOUTS: Registry[Layout] = Registry(
         "grid": "stages.layouts.grid:Grid",
         "importance": "stages.layouts.importance:Importance",
         "poisson": "stages.layouts.poisson:Poisson",
-        "edges": "stages.layouts.edges:Edges",
+        "edges": "stages.layouts.outlines:Outlines",
         "radial": "stages.layouts.radial:Radial",
         "hex": "stages.layouts.hexagons:Hexagons",
         "phyllotaxis": "stages.layouts.phyllotaxis:Phyllotaxis",

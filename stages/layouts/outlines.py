@@ -25,7 +25,7 @@ FAINT = 2.0
 
 
 @dataclass(frozen=True)
-class Edges:
+class Outlines:
     """Points on the outlines of what is seen, the denser the stronger, and some by lot between.
 
     Raises:
