@@ -18,6 +18,7 @@ from stages.solve.bench import Bench
 from stages.solve.color_limits import Limiter
 from stages.solve.color_owners import color_owners
 from stages.solve.convergence import Convergence
+from stages.solve.hold import Hold
 from stages.solve.quality import FALL, Trial, smallest_that_reaches
 from stages.solve.steady_colors import steadied
 from stages.spaces import SPACES
@@ -80,6 +81,7 @@ class Triangulator:
         self._space = SPACES[options.space]()
         self._options = _against(options, self._space.scale)
         self._device, self._size = device, size
+        self._hold = Hold(options.keep_layout)
         self._least = options.refine.least_count(*size)
         fitted = max(options.model, drawn or options.model, key=lambda model: model.degree)
         device.expect(limiting_kernels(device, options.model, fitted))
@@ -100,10 +102,11 @@ class Triangulator:
         appraiser = Appraiser(workspace, SLIVER_HEIGHT)
         approximator = Approximator(
             workspace=workspace,
-            topology=TOPOLOGIES[options.topology](),
+            topology=self._hold.calmed(TOPOLOGIES[options.topology]()),
             appraiser=appraiser,
             options=options.optimize,
             iterations=options.iterations,
+            hold=self._hold,
         )
         return Bench(workspace, appraiser, approximator)
 
@@ -183,12 +186,12 @@ class Triangulator:
         """
         self._hold(seed.locks)
         self._load(frame)
-        iterations = self._options.frame_iterations
+        iterations = 0 if self._hold.is_full else self._options.frame_iterations
         rounds = max(1, iterations // FRAME_ROUND - 1)
         each = iterations // (rounds + 1)
         convergence = Convergence(FRAME_SAVING, patience=1)
         spring = SPRING * self._rmse(seed.mesh) ** 2
-        unrest = self._unrest(seed, earlier)
+        unrest = None if self._hold.share else self._unrest(seed, earlier)
         if unrest is not None:
             seed = unrest.freed(seed)
         mesh = self._follow(seed.mesh, seed, spring, each, frame.weights)
@@ -196,7 +199,10 @@ class Triangulator:
             renewing = int(RENEWED * rounds)
             mesh = self._renew(mesh, seed, unrest, frame.weights, spring, renewing, each)
             rounds -= renewing
-        goal = self._goal(self._followed_count(mesh), calm=True, unrest=unrest)
+        count = self._followed_count(mesh)
+        if self._hold.is_full and earlier is not None:
+            count = earlier.mesh.triangle_count  # a layout has about as many as were asked for
+        goal = self._goal(count, calm=True, unrest=unrest)
         for _ in range(rounds):
             if each and convergence.is_reached(self._workspace.last_energy()):
                 break
@@ -299,7 +305,8 @@ class Triangulator:
             iterations: Number of steps.
             weights: The picture's, [H, W] uint8, or None.
         """
-        load_mesh(self._workspace, mesh, springs_of(mesh, seed, spring, weights))
+        hold = self._hold.strength(spring / SPRING)
+        load_mesh(self._workspace, mesh, springs_of(mesh, seed, spring, weights, hold))
         return optimize(
             self._workspace,
             mesh,
@@ -312,6 +319,8 @@ class Triangulator:
     def _trial(self, frame: Frame, layout: Layout, rng: np.random.Generator, goal: Goal) -> Trial:
         """Approximate the picture in the workspace from scratch."""
         count = self._approximator.growth(goal).count(0.0, goal.count)
+        if self._approximator.keeps_layout:
+            count = goal.count
         mesh = layout.build(frame.pixels, max(2, count), rng)
         mesh = self._approximator.approximate(mesh, goal)
         if self._options.refine.quality is None or self._fitting is not self._even.workspace:

@@ -45,6 +45,7 @@ class ShapeKeywords(DeviceKeywords, total=False):
     focus: str | Sequence[str]
     color: str
     iterations: int
+    keep_layout: float
     topology: str
     sums: str
     space: str

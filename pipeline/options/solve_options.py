@@ -40,7 +40,8 @@ class SolveOptions:
     layout: Layout = field(
         default_factory=Importance,
         metadata={
-            "help": "first mesh of a shot; importance takes a grey picture: importance:MAP.png",
+            "help": "first mesh of a shot; importance takes a grey picture: importance:MAP.png, "
+            "points x and y a line: points:FILE.csv",
             "registry": LAYOUTS,
         },
     )

@@ -14,7 +14,7 @@ by less than the dead band."""
 
 
 def springs_of(
-    mesh: Mesh, seed: Carried, strength: float, weights: np.ndarray | None
+    mesh: Mesh, seed: Carried, strength: float, weights: np.ndarray | None, hold: float = 0.0
 ) -> np.ndarray:
     """Where the temporal term holds each vertex, and how strongly; new ones are free.
 
@@ -24,6 +24,7 @@ def springs_of(
         strength: Of the spring where the motion is certain [code value^2].
         weights: The picture's: what pulls at a vertex grows with them, and so must its spring;
             [H, W] uint8, or None.
+        hold: Of the spring wherever the motion leads, for a layout that is kept [code value^2].
 
     Returns:
         Places [px] and strengths [code value^2], [V, 3].
@@ -33,7 +34,7 @@ def springs_of(
     old = np.searchsorted(seed.mesh.vertex_ids, mesh.vertex_ids)
     known = mesh.vertex_ids < seed.mesh.next_vertex_id
     springs[known, :2] = seed.mesh.vertices[old[known]]
-    springs[known, 2] = strength * seed.trust[old[known]]
+    springs[known, 2] = strength * seed.trust[old[known]] + hold
     if weights is not None:
         springs[:, 2] *= _firmness(weights, springs[:, :2])
     if not seed.locks.is_empty:
