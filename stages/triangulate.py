@@ -115,7 +115,7 @@ class Triangulator:
         self._workspace, self._appraiser = bench.workspace, bench.appraiser
         self._approximator = bench.approximator
 
-    def _hold(self, locks: Locks) -> None:
+    def _lock(self, locks: Locks) -> None:
         """Hold fast from now on what a person holds, and nothing else."""
         if self._locks is not locks:
             self._locks = locks
@@ -139,7 +139,7 @@ class Triangulator:
             layout: Makes the first mesh.
             rng: Randomness of the layout.
         """
-        self._hold(NO_LOCKS)
+        self._lock(NO_LOCKS)
         self._load(frame)
         refine = self._options.refine
 
@@ -184,7 +184,7 @@ class Triangulator:
             earlier: What was given for the previous frame, here or to `recall`: by it is told where
                 the picture boils, and colours keep to its; None for neither.
         """
-        self._hold(seed.locks)
+        self._lock(seed.locks)
         self._load(frame)
         iterations = 0 if self._hold.is_full else self._options.frame_iterations
         rounds = max(1, iterations // FRAME_ROUND - 1)
