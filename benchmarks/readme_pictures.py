@@ -95,6 +95,16 @@ PICTURES: dict[str, Picture] = {
         600,
         quality=86,
     ),
+    "layouts": Picture(
+        [
+            stills("out/poisson.png", "out/outlines.png", "out/hex.png"),
+            stills("out/phyllotaxis.png", "out/radial.png", "out/web.png"),
+        ],
+        400,
+        quality=86,
+    ),
+    "kept": Picture([stills("out/kept.png", "out/half_kept.png")], 512, quality=84),
+    "lattice": Picture([of("out/lattice.mp4", 0, 9, 20)], 480, quality=84),
     "lenses": Picture([of("out/lenses.mp4", 61)], 1120),
 }
 

@@ -6,6 +6,7 @@
 import dataclasses
 import json
 import reprlib
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +17,7 @@ from pipeline.track.plain_values import CLASS, UnknownNameError, from_plain, to_
 from stages.hand import EDITS, Edit
 from stages.media.text_file import read_text
 from stages.media.writing.commit import PendingFile
-from warp_kernels.errors import MediaError
+from warp_kernels.errors import MediaError, OptionError
 
 KIND = "edit"
 """The key of an edit's kind."""
@@ -73,6 +74,28 @@ def read_log(path: Path) -> EditLog:
         reason = str(getattr(error, "strerror", None) or error).lower()
         raise MediaError(path, f"the log of edits cannot be read ({reason})", FORM) from error
     return from_json_lines(text, path)
+
+
+def log_of(edits: object) -> EditLog:
+    """A log from what a program has: edits, or mappings such as a line of a file holds.
+
+    Args:
+        edits: A log, or a sequence.
+
+    Raises:
+        OptionError: If it is something else.
+        MediaError: Naming the entry that is no edit, counted from 1.
+    """
+    if isinstance(edits, EditLog):
+        return edits
+    if not isinstance(edits, Sequence) or isinstance(edits, str | bytes):
+        raise OptionError(f"edits: {reprlib.repr(edits)} is no list; {FORM}")
+    kinds = tuple(EDITS.usable.values())
+    lines = [
+        json.dumps(_as_dict(edit) if isinstance(edit, kinds) else edit, default=repr)
+        for edit in edits
+    ]
+    return from_json_lines("\n".join(lines), "edits")
 
 
 def write_log(log: EditLog, path: Path) -> None:

@@ -45,6 +45,7 @@ class ShapeKeywords(DeviceKeywords, total=False):
     focus: str | Sequence[str]
     color: str
     iterations: int
+    keep_layout: float
     topology: str
     sums: str
     space: str
@@ -57,9 +58,10 @@ class ShapeKeywords(DeviceKeywords, total=False):
 
 
 class PictureKeywords(ShapeKeywords, total=False):
-    """How one picture becomes triangles; weights may be an array."""
+    """How one picture becomes triangles; weights may be an array, edits a list."""
 
     weights: Any
+    edits: Any
 
 
 class AnimatorKeywords(ShapeKeywords, total=False):
@@ -78,6 +80,7 @@ class SolveKeywords(AnimatorKeywords, SourceKeywords, total=False):
 
     preset: Name | None
     timeline: Name | None
+    edits: Any
     jobs: int
     overwrite: bool
     resume: bool
@@ -170,8 +173,11 @@ DRAWN = (
 
 TAKEN: dict[str, Callable[[Option], bool]] = {
     **{name: COMMAND_OPTIONS[name] for name in ("animate", "solve", "render", "measure")},
-    "triangulate": _for_pictures,
-    "Animator": lambda option: _for_pictures(option) or option.group in ("triangles", "motion"),
+    "triangulate": lambda option: _for_pictures(option) or option.dest == "edits",
+    "Animator": lambda option: (
+        option.dest != "edits"
+        and (_for_pictures(option) or option.group in ("triangles", "motion"))
+    ),
     "draw": lambda option: option.dest in DRAWN,
 }
 """Which options a function takes."""

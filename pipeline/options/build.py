@@ -14,6 +14,7 @@ from pipeline.options.output_name import output_in
 from pipeline.options.run import Run
 from pipeline.options.tones import parse_grade, parse_palette
 from stages.media.frame_range import FrameRange
+from warp_kernels.registry import imported
 from warp_kernels.styles import STYLES
 
 Part = TypeVar("Part")
@@ -51,6 +52,9 @@ def values_of(given: Mapping[str, Any]) -> dict[str, Any]:
             named = values.pop(name, None)
             if named is not None:
                 values[field] = output_in(named, source, ending)
+    if isinstance(values.get("edits"), str):
+        read_log = imported("pipeline.edit_log.json_lines:read_log")
+        values["edits"] = read_log(Path(values["edits"]))
     if given.get("resume"):
         values["overwrite"] = True  # what is drawn from a track replaces what was drawn before
     for option in job_options():

@@ -2,17 +2,20 @@
 
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 from stages.hand import EDITS, Edit
-from stages.hand.worked import Worked
 from warp_kernels.errors import EditError
+
+if TYPE_CHECKING:
+    from stages.hand.worked import Worked
 
 
 @dataclass(frozen=True)
 class Replayed:
     """What edits made of a mesh."""
 
-    worked: Worked
+    worked: "Worked"
     """The mesh and what is held of it."""
     refused: tuple[str, ...] = ()
     """What could not be made of it, one sentence for each edit; these changed nothing."""
@@ -41,7 +44,7 @@ class EditLog:
         """
         return next((frame for frame in self.frames if frame >= index), None)
 
-    def replay(self, frame: int, worked: Worked) -> Replayed:
+    def replay(self, frame: int, worked: "Worked") -> Replayed:
         """Make the edits of a frame, in their order.
 
         Args:
