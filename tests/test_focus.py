@@ -15,20 +15,20 @@ from pipeline.cli import main
 from pipeline.envelope import InShot
 from pipeline.loop.animate import animate, solve
 from pipeline.loop.attention import UNIT, WINDOW, Attention, reach_of
-from pipeline.loop.face_tracks import CARRIED, MEMORY, SPACING, FaceTracks
+from pipeline.loop.face_tracks import CARRIED, MEMORY, SEARCHED, SPACING, FaceTracks
 from pipeline.options.members import parse_member
 from pipeline.options.solve_options import SolveOptions
 from pipeline.progress import Progress
 from pipeline.track import TrackReader
 from pipeline.track.plain_values import from_plain, to_plain
 from stages.focus import FOCI, Glance, resolved, spelled
-from stages.focus.blazeface import MODEL, BlazeFace
 from stages.focus.center import Center
 from stages.focus.face import Face, emphasis
 from stages.focus.faces import Auto, Faces
 from stages.focus.none import NoFocus
 from stages.focus.picture import Picture
 from stages.focus.search import OPENING, SURE, FaceSearch
+from stages.focus.yunet import MODEL, YuNet
 from stages.frame import Frame
 from stages.layouts.importance import Importance
 from stages.media import open_decoder, probe
@@ -172,17 +172,17 @@ def test_mistakes_are_one_line(spec: str, word: str, tmp_path: Path, capsys) -> 
 
 def test_missing_network_is_one_line(tmp_path: Path, capfd) -> None:
     """Neither a missing file nor a damaged one makes OpenCV print anything of its own."""
-    damaged = tmp_path / "b.tflite"
+    damaged = tmp_path / "b.onnx"
     damaged.write_bytes(MODEL.read_bytes()[:1000])
-    for path in (tmp_path / "a.tflite", damaged):
-        with pytest.raises(OptionError, match=r"tflite is missing or damaged; .*--focus none"):
-            BlazeFace(path)
+    for path in (tmp_path / "a.onnx", damaged):
+        with pytest.raises(OptionError, match=r"onnx is missing or damaged; .*--focus none"):
+            YuNet(path)
     assert capfd.readouterr() == ("", "")
 
 
 def test_network_is_shipped_with_its_licence() -> None:
     """The licence and where the network is from stand beside it."""
-    assert MODEL.stat().st_size == 315332
+    assert MODEL.stat().st_size == 317466
     assert "Apache License" in MODEL.with_name("LICENSE").read_text(encoding="utf-8")
     assert "Apache License 2.0" in MODEL.with_name("README.md").read_text(encoding="utf-8")
 
@@ -207,6 +207,22 @@ def test_small_turned_and_mirrored_faces_are_found(
     near = [face for c, face in found if c >= SURE and np.hypot(*(face.middle - (160, 110))) < size]
     assert near
     assert near[0].size == pytest.approx(size, rel=0.3)
+
+
+@pytest.mark.parametrize(("size", "turn"), [(40, -60), (40, -90), (80, 90), (150, -60)])
+def test_faces_that_lie_are_found(
+    size: int, turn: int, portrait: np.ndarray, search: FaceSearch
+) -> None:
+    """With their eyes where they are, though the network tells those of turned faces wrong."""
+    picture = seen_from(portrait, (320, 240), (160, 110), size, turn)
+    certainty, face = min(  # the border mirrors another one
+        search.everywhere(picture, OPENING),
+        key=lambda entry: float(np.hypot(*(entry[1].middle - (160, 110)))),
+    )
+    assert certainty >= SURE
+    across = face.places[2] - face.places[1]
+    told = np.degrees(np.arctan2(-across[1], across[0]))
+    assert told == pytest.approx(turn, abs=20)
 
 
 @pytest.mark.parametrize("kind", ["noise", "flat", "squares", "clouds"])
@@ -437,6 +453,43 @@ def test_what_lies_far_back_does_not_matter() -> None:
                 carried += 1
     assert carried > 100
     assert CARRIED * SPACING < MEMORY
+
+
+@dataclass
+class ToldSearch:
+    """Sees at each search what it was told to, and nothing between."""
+
+    told: list[list[tuple[float, Face]]]
+
+    def everywhere(self, pixels: np.ndarray, most: float) -> list[tuple[float, Face]]:
+        """What comes next."""
+        return self.told.pop(0)
+
+    def near(self, pixels: np.ndarray, face: Face) -> Face | None:
+        """Always where it was."""
+        return face
+
+
+@pytest.mark.parametrize(
+    ("told", "seen_from"),
+    [
+        ([[0.74], [0.74], []], 5),
+        ([[0.74], [], [0.74]], None),
+        ([[0.6], [0.74], [0.6]], None),
+        ([[0.9], [], []], 0),
+        ([[], [0.9], []], 5),
+    ],
+)
+def test_what_is_hardly_a_face_must_be_seen_twice(told: list, seen_from: int | None) -> None:
+    """A score that stays is a face, one that flashes is none."""
+    face = Face(np.array([[40, 40], [36, 36], [44, 36], [40, 46]], float), 20.0)
+    search = ToldSearch([[(score, face) for score in scores] for scores in told])
+    tracks = FaceTracks(search, (100, 100), 50.0, 1, is_still=False)
+    frames = numbered(0, 2 * SEARCHED + 1)
+    for frame in frames:
+        tracks.see(frame, is_last=frame is frames[-1])
+    weighed = [frame.index for frame in frames if tracks.added(frame.index) is not None]
+    assert weighed == ([] if seen_from is None else list(range(seen_from, 2 * SEARCHED + 1)))
 
 
 def test_maps_are_smoothed_over_their_window(portrait: np.ndarray) -> None:

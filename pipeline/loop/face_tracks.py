@@ -11,9 +11,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from stages.focus.blazeface import is_same
 from stages.focus.face import Face, emphasis
-from stages.focus.search import OPENING, PASSING, STILL, SURE, FaceSearch
+from stages.focus.search import LIKELY, OPENING, PASSING, STILL, SURE, FaceSearch
+from stages.focus.yunet import is_same
 from stages.frame import Frame
 
 SPACING = 4
@@ -24,7 +24,7 @@ THOROUGH = 12 * SEARCHED
 """Frames from one search that also finds small faces to the next."""
 CARRIED = THOROUGH // SPACING + 2
 """Most keys over which a face is followed that no search of the whole picture finds."""
-MEMORY = SPACING * (CARRIED + 2)
+MEMORY = SPACING * (CARRIED + 2) + SEARCHED
 """Frames before a key on which what is known there may depend."""
 HELD = (1.0, 0.7, 0.35)
 """Share that a face keeps which was not found at one key, two and three in a row; then it is
@@ -70,6 +70,7 @@ class FaceTracks:
         self._opening = STILL if is_still else OPENING
         self._key: int | None = None
         self._known: list[_Known] = []
+        self._likely: list[Face] = []
         self._waiting: list[int] = []
         self._faces: dict[int, list[Face]] = {}
 
@@ -118,13 +119,25 @@ class FaceTracks:
             most = OPENING
         elif number % SEARCHED == 0:
             most = PASSING
-        found = [] if most is None else self._search.everywhere(frame.pixels, most)
-        known = [_Known(face) for certainty, face in found if certainty >= SURE]
-        unsure = [face for certainty, face in found if certainty < SURE]
+        known, unsure = ([], []) if most is None else self._found(frame, most)
         old = sorted(enumerate(self._known), key=lambda entry: entry[1].age)
         for place, one in old:
             _carry(one, place, known, self._followed(one, frame, known, unsure))
         return known
+
+    def _found(self, frame: Frame, most: float) -> tuple[list[_Known], list[Face]]:
+        """What a search finds: faces, and what is one only where one was before."""
+        found = self._search.everywhere(frame.pixels, most)
+        before, self._likely = self._likely, [face for c, face in found if c >= LIKELY]
+        known, unsure = [], []
+        for certainty, face in found:
+            if certainty >= SURE or (
+                certainty >= LIKELY and any(is_same(face, other) for other in before)
+            ):
+                known.append(_Known(face))
+            else:
+                unsure.append(face)
+        return known, unsure
 
     def _followed(
         self, one: _Known, frame: Frame, known: list[_Known], unsure: list[Face]

@@ -6,13 +6,13 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-FACE_GAIN, FACE_RADIUS = 5.5, 0.55
+FACE_GAIN, FACE_RADIUS = 4.6, 0.55
 """What is added over a face, and how far it reaches from its middle [face sizes]."""
 EYE_GAIN, EYE_RADII = 5.0, (0.12, 0.08)
 """The same over each eye; along the line through the eyes and across it [face sizes]."""
 MOUTH_GAIN, MOUTH_RADII = 4.0, (0.16, 0.1)
 """The same over the mouth."""
-DETAILED, RICHEST = 40.0, 2.0
+DETAILED, RICHEST = 40.0, 2.6
 """A face that more mean triangles than this would cover counts the more, with the root of their
 number, up to so many times: each of them brings less there, and of such a face there is more. Its
 eyes and mouth, which have triangles enough, count as much less."""

@@ -2,18 +2,21 @@
 
 import numpy as np
 
-from stages.focus.blazeface import BlazeFace, is_same
 from stages.focus.face import Face
+from stages.focus.yunet import YuNet, is_same
 
-STILL, OPENING, PASSING = 1.5e6, 2.4e5, 3.6e4
+STILL, OPENING, PASSING = 1.5e6, 2.4e5, 5.4e4
 """Largest picture that the network gets of a still, of the first frame of a shot (and now and then
-of later ones), and of the frames between [px]. It sees faces of 16 px and more there."""
+of later ones), and of the frames between [px]. It sees faces of 10 px and more there."""
 STEP = 3.0
 """Each search is in a copy so many times smaller than the one before."""
 COARSEST = 160
 """Until a copy is as small as this [px]; then a face that fills the picture is found."""
-SURE = 0.7
-"""From this on it is a face (see `BlazeFace.examined`)."""
+SURE = 0.77
+"""From this on it is a face (see `YuNet.examined`)."""
+LIKELY = 0.7
+"""From this on it is one where two searches in a row see it: what only looks like a face once, as
+a drawn animal does, has moved by then."""
 MAYBE = 0.5
 """From this on it is one where one was before."""
 
@@ -26,7 +29,7 @@ class FaceSearch:
     """
 
     def __init__(self) -> None:
-        self._network = BlazeFace()
+        self._network = YuNet()
 
     def everywhere(self, pixels: np.ndarray, most: float) -> list[tuple[float, Face]]:
         """Search a whole picture.
