@@ -200,7 +200,7 @@ def run_listen(arguments: argparse.Namespace) -> None:
     Args:
         arguments: What the user gave.
     """
-    from pipeline.commands.listen import listen_to
+    from pipeline.commands.hearing.listen import listen_to
 
     told = listen_to(arguments)
     if told:

@@ -2,14 +2,18 @@
 
 import numpy as np
 import pytest
+from scipy.spatial import Delaunay, cKDTree
 
 from stages.layouts import LAYOUTS
+from stages.layouts.delaunay import apart_from, delaunay_mesh, earlier_ones
 from stages.layouts.grid import Grid
 from stages.layouts.importance import Importance
 from stages.mesh import Mesh
 from stages.validate import assert_valid
 from warp_kernels.errors import OptionError
 
+DRAWN = [name for name in LAYOUTS if name != "points"]
+"""Layouts that find their points themselves."""
 SIZES = [(1, 1), (2, 2), (2, 720), (720, 2), (1, 50), (13, 7), (120, 90)]
 
 
@@ -29,7 +33,7 @@ def build(name: str, pixels: np.ndarray, triangle_count: int, seed: int = 0) -> 
 
 @pytest.mark.parametrize("triangle_count", [2, 3, 50, 701])
 @pytest.mark.parametrize("size", SIZES)
-@pytest.mark.parametrize("name", LAYOUTS)
+@pytest.mark.parametrize("name", DRAWN)
 def test_every_layout_is_valid_at_every_size(
     name: str, size: tuple[int, int], triangle_count: int
 ) -> None:
@@ -41,7 +45,7 @@ def test_every_layout_is_valid_at_every_size(
         assert mesh.triangle_count >= 2
 
 
-@pytest.mark.parametrize("name", LAYOUTS)
+@pytest.mark.parametrize("name", DRAWN)
 def test_every_layout_gives_about_the_wanted_number(name: str) -> None:
     """The number of triangles is met within a tenth, from few to many."""
     for triangle_count in (10, 100, 700, 5000):
@@ -49,7 +53,7 @@ def test_every_layout_gives_about_the_wanted_number(name: str) -> None:
         assert mesh.triangle_count == pytest.approx(triangle_count, rel=0.1, abs=3)
 
 
-@pytest.mark.parametrize("name", LAYOUTS)
+@pytest.mark.parametrize("name", DRAWN)
 def test_every_layout_depends_on_its_generator_alone(name: str) -> None:
     """Equal generators give equal bits."""
     first, second = (build(name, picture(60, 80), 300, seed=5) for _ in range(2))
@@ -57,7 +61,7 @@ def test_every_layout_depends_on_its_generator_alone(name: str) -> None:
     assert np.array_equal(first.triangles, second.triangles)
 
 
-@pytest.mark.parametrize("name", LAYOUTS)
+@pytest.mark.parametrize("name", DRAWN)
 def test_every_layout_starts_without_slivers(name: str) -> None:
     """No triangle starts thinner than a tenth of the even spacing."""
     mesh = build(name, picture(180, 240), 700)
@@ -130,3 +134,56 @@ def test_importance_refuses_a_map_that_is_none(value: float) -> None:
     layout = Importance(importance_map=np.full((4, 4), value))
     with pytest.raises(OptionError, match="importance map"):
         layout.build(picture(20, 20), 50, np.random.default_rng(0))
+
+
+@pytest.mark.parametrize("inner", [0, 1, 2, 60, 400])
+@pytest.mark.parametrize("along", [0, 1, 7])
+def test_triangles_are_those_of_scipy(along: int, inner: int) -> None:
+    """Any number of vertices inside and along the border; each of them is used."""
+    rng = np.random.default_rng([along, inner])
+    sides = [
+        np.array([[0, 0], [90, 0], [0, 60], [90, 60]]),
+        np.stack([rng.random(along) * 90, np.zeros(along)], axis=1),
+        np.stack([np.full(2 * along, 90), rng.random(2 * along) * 60], axis=1),
+    ]
+    border, inside = np.concatenate(sides), 1 + rng.random((inner, 2)) * (88, 58)
+    mesh = delaunay_mesh(border, inside, 90, 60)
+    assert_valid(mesh)
+    assert np.array_equal(mesh.vertices, np.concatenate([border, inside]))
+    if inner:  # without, four vertices lie on a circle
+        expected = Delaunay(mesh.vertices).simplices
+        flat = {tuple(sorted(row)) for row in expected.tolist() if _area(mesh.vertices[row]) == 0}
+        assert _sets(mesh.triangles) == _sets(expected) - flat
+
+
+def test_a_vertex_between_two_others_is_left_out() -> None:
+    """A triangle without area is none."""
+    border = np.array([[0, 0], [8, 0], [0, 8], [8, 8]], dtype=np.float64)
+    mesh = delaunay_mesh(border, np.array([[4.0, 4.0]]), 8, 8)
+    assert_valid(mesh)
+    assert mesh.vertex_count == 4
+
+
+@pytest.mark.parametrize("spacing", [0.01, 3.0, 500.0])
+def test_distances_are_those_of_scipy(spacing: float) -> None:
+    """Who is too near to others, and of two close ones the later."""
+    rng = np.random.default_rng(4)
+    points, others = rng.random((2, 200, 2)) * 50
+    points[5:9] = points[4]
+    known = cKDTree(others).query(points)[0] >= spacing
+    assert np.array_equal(apart_from(points, others, spacing), known)
+    near = cKDTree(points).query_pairs(spacing, output_type="ndarray")
+    expected = np.ones(len(points), dtype=bool)
+    expected[near.max(axis=1)] = False
+    assert np.array_equal(earlier_ones(points, spacing), expected)
+
+
+def _area(corners: np.ndarray) -> float:
+    """Twice the area of a triangle [px^2]."""
+    (a, b), (c, d) = corners[1:] - corners[0]
+    return float(a * d - b * c)
+
+
+def _sets(triangles: np.ndarray) -> set[tuple[int, ...]]:
+    """Triangles whatever corner comes first."""
+    return {tuple(sorted(row)) for row in triangles.tolist()}

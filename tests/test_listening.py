@@ -1,4 +1,4 @@
-"""Listening: beats and bars of music that is known, and sounds in which there is nothing to hear."""
+"""Listening: beats and bars of known music, and sounds in which there is nothing to hear."""
 
 import json
 import wave

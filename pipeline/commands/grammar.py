@@ -5,7 +5,7 @@ import re
 from typing import Any, NoReturn
 
 from pipeline.commands.examples import ABOUT_ALL, EXAMPLES, shown
-from pipeline.commands.listen_grammar import LISTEN_ABOUT, LISTEN_USAGE, add_listen_options
+from pipeline.commands.hearing.grammar import LISTEN_ABOUT, LISTEN_USAGE, add_listen_options
 from pipeline.commands.style_list import registry_help
 from pipeline.commands.unknown import no_command, unknown_arguments
 from pipeline.options.command_line import add_job_options

@@ -4,7 +4,7 @@ import numpy as np
 from scipy.ndimage import maximum_filter1d
 
 from stages.hearing.listening.spectrum import FRAMES, LONG_HOP, RATE, Spectrum
-from stages.hearing.listening.strength import Strength
+from stages.hearing.listening.strength import Rising
 
 CHANGE = 1.5
 """What a change of the harmony counts, beside the low bands."""
@@ -14,9 +14,7 @@ _NEAR = 3
 """Spectra around a beat in which it is looked for."""
 
 
-def downbeats_of(
-    spectrum: Spectrum, strength: Strength, beats: np.ndarray, meter: int
-) -> np.ndarray:
+def downbeats_of(spectrum: Spectrum, strength: Rising, beats: np.ndarray, meter: int) -> np.ndarray:
     """Find the first beats of bars, as numbers of beats, [D] int.
 
     Args:

@@ -13,7 +13,7 @@ from stages.hearing.listening.envelopes import SILENCE, envelopes_of
 from stages.hearing.listening.octave import octave_of
 from stages.hearing.listening.onsets import onsets_of
 from stages.hearing.listening.spectrum import FRAMES, RATE, Spectrum, spectrum_of
-from stages.hearing.listening.strength import Strength, strength_of
+from stages.hearing.listening.strength import Rising, strength_of
 from stages.hearing.listening.tempo import tempo_of
 from stages.media.sound.samples import SampleForm, samples_of
 
@@ -93,7 +93,7 @@ def heard_in(spectrum: Spectrum, bpm: float | None, meter: int) -> tuple[Heard, 
     return _steady(heard, bpm), ("it is too short for a beat" if is_short else NO_BEAT,)
 
 
-def _beats(spectrum: Spectrum, strength: Strength, bpm: float | None) -> np.ndarray:
+def _beats(spectrum: Spectrum, strength: Rising, bpm: float | None) -> np.ndarray:
     """Beats, as places between spectra; none where there is no beat."""
     if spectrum.duration < SHORTEST and bpm is None:
         return np.empty(0)

@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.ndimage import maximum_filter1d
 
-from stages.hearing.listening.strength import Strength
+from stages.hearing.listening.strength import Rising
 
 EQUAL, WEAK = 0.65, 0.45
 """What is midway between beats is a beat, too, if it is as strong as this part of one; every second
@@ -14,7 +14,7 @@ _NEAR = 3
 """Spectra around a moment in which it is looked for."""
 
 
-def octave_of(strength: Strength, beats: np.ndarray, bpm: float) -> float:
+def octave_of(strength: Rising, beats: np.ndarray, bpm: float) -> float:
     """By what the tempo is to be multiplied: 2, 1 or 0.5.
 
     Cymbals keep time between beats as loudly as on them, so the low and the middle bands decide.

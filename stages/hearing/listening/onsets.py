@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.ndimage import median_filter
 
-from stages.hearing.listening.strength import Strength, peaks_of, refined
+from stages.hearing.listening.strength import Rising, peaks_of, refined
 
 APART = 4
 """Spectra between onsets at least."""
@@ -15,7 +15,7 @@ _AROUND = 31
 """Spectra over which it is found what is usual."""
 
 
-def onsets_of(strength: Strength) -> np.ndarray:
+def onsets_of(strength: Rising) -> np.ndarray:
     """Find onsets, as places between spectra, [O] float64.
 
     Args:

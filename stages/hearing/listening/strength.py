@@ -29,7 +29,7 @@ _CHUNK = 4096
 
 
 @dataclass(frozen=True, eq=False)
-class Strength:
+class Rising:
     """How much begins, at every spectrum; all [N] float64."""
 
     whole: np.ndarray
@@ -44,7 +44,7 @@ class Strength:
     """In the high bands: cymbals and hisses."""
 
 
-def strength_of(spectrum: Spectrum) -> Strength:
+def strength_of(spectrum: Spectrum) -> Rising:
     """Find how much begins.
 
     Args:
@@ -66,7 +66,7 @@ def strength_of(spectrum: Spectrum) -> Strength:
             found[start : start + _CHUNK, number] = rise[:, group].mean(axis=1)
     shares = np.array([group.mean() for group in groups])
     raw = (found * shares).sum(axis=1)
-    return Strength(unusual(raw), raw, found[:, 0], found[:, 1], found[:, 2])
+    return Rising(unusual(raw), raw, found[:, 0], found[:, 1], found[:, 2])
 
 
 def unusual(values: np.ndarray) -> np.ndarray:

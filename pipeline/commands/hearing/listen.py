@@ -13,7 +13,7 @@ from stages.hearing.formats.json_form import MOST_METER, as_json
 from stages.hearing.heard import USUAL_METER, Heard
 from stages.hearing.listening.listen import NO_BEAT, Listened, listen
 from stages.hearing.listening.spectrum import FRAMES
-from stages.look.sound_sheet import sound_sheet
+from stages.look.sheet_sound import sheet_of_sound
 from stages.media.naming import STILL_ENDINGS
 from stages.media.writing.commit import true_place
 from stages.media.writing.still_writer import write_picture
@@ -51,7 +51,7 @@ def listen_to(arguments: argparse.Namespace) -> str:
         elif kind == "labels":
             write_labels(heard, path)
         else:
-            write_picture(path, sound_sheet(heard, found.wave, FRAMES, source.name))
+            write_picture(path, sheet_of_sound(heard, found.wave, FRAMES, source.name))
     if arguments.json:
         return as_json(heard).rstrip("\n")
     told = _told(heard, source, written)

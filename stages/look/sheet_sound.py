@@ -62,7 +62,7 @@ class _Line:
         return times[(times >= self.begin) & (times < self.begin + self.seconds)]
 
 
-def sound_sheet(heard: Heard, wave: np.ndarray, rate: float, title: str) -> np.ndarray:
+def sheet_of_sound(heard: Heard, wave: np.ndarray, rate: float, title: str) -> np.ndarray:
     """Draw a sound.
 
     Args:
