@@ -81,6 +81,11 @@ class Stage:
             backdrop = scene.look.backdrop(model)
             self._is_alpha |= backdrop is None and wardrobe.is_transparent(scene.look)
 
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What is told of what a timeline hears, one sentence each."""
+        return () if self._show is None else self._show.notes
+
     def looks_at(self, index: int, shown: Fraction, shot: int) -> Looks:
         """What is drawn at a frame.
 
