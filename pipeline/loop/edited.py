@@ -18,6 +18,7 @@ from pipeline.options.solve_options import SolveOptions
 from stages.flows.passage import Passage
 from stages.flows.view import View
 from stages.frame import Frame
+from stages.hand.locks import Locks
 from stages.hand.worked import Worked
 from stages.motion.advect import Carried
 from stages.motion.meeting import Meeting
@@ -106,26 +107,28 @@ class EditedFrames:
         if replayed.worked is begun:
             return
         snapshot = self._triangulator.next(frame, Carried.by_hand(replayed.worked))
+        made = snapshot.locks.but_for(begun.locks)
         here = _Found(here.ready, snapshot)
-        self._waiting = [*self._reached_back(here, self._waiting[:-1]), here]
+        self._waiting = [*self._reached_back(here, self._waiting[:-1], made), here]
         here = self._resumed(here)
         self._waiting[-1] = here
         self._edited, self._snapshot = here, here.snapshot
         yield from self._given()
 
-    def _reached_back(self, edited: _Found, before: Sequence[_Found]) -> list[_Found]:
+    def _reached_back(self, edited: _Found, before: Sequence[_Found], made: Locks) -> list[_Found]:
         """Let the edits of a frame reach back: to the shot's begin, or half way to others.
 
         Args:
             edited: The frame.
             before: Those before it that are not final, in order.
+            made: What its own edits hold fast.
         """
         if self._edited is None:
             return self._backwards(edited, before)
         half = len(before) // 2
         fade = min(FADE, half)
         begin = half - fade
-        back = self._backwards(edited, before[begin:])
+        back = self._backwards(edited, before[begin:], made)
         pairs = list(zip(before[begin:], back, strict=True))
         meetings = [
             Meeting(one.snapshot.mesh, other.snapshot.mesh) for one, other in pairs[: 2 * fade]
@@ -146,17 +149,19 @@ class EditedFrames:
         mesh = meeting.between(share, line)
         if mesh is None:
             return nearer
-        held = [one.snapshot.locks for one in pair]
-        locks = held[0].adding(held[1].vertices, held[1].edges, held[1].bare).within(mesh)
+        locks = pair[0].snapshot.locks.joined(pair[1].snapshot.locks).within(mesh)
         snapshot = self._triangulator.fit(nearer.ready.frame, mesh)
         return _Found(nearer.ready, replace(snapshot, locks=locks))
 
-    def _backwards(self, edited: _Found, before: Sequence[_Found]) -> list[_Found]:
+    def _backwards(
+        self, edited: _Found, before: Sequence[_Found], made: Locks | None = None
+    ) -> list[_Found]:
         """Follow an edited frame backwards in time.
 
         Args:
             edited: The frame.
             before: Those before it, in order; they are solved again.
+            made: What edits of the frame hold fast, if all else shall stay as it was solved.
         """
         later, again = edited, []
         view = View(later.ready.frame.pixels)
@@ -167,9 +172,26 @@ class EditedFrames:
             mesh_from = MeshFrom.SAME_PICTURE if is_same else passage
             ready = replace(one.ready, mesh_from=mesh_from)
             snapshot = followed(self._triangulator, self._options, ready, later.snapshot)
+            if made is not None:
+                snapshot = self._but_for(made, one, snapshot)
             later, view = _Found(one.ready, snapshot), earlier
             again.append(later)
         return again[::-1]
+
+    def _but_for(self, made: Locks, one: _Found, again: Snapshot) -> Snapshot:
+        """What a frame was, with what edits made of it.
+
+        Args:
+            made: What the edits hold fast.
+            one: The frame as it was solved forwards.
+            again: What it became backwards.
+        """
+        mesh = Meeting(one.snapshot.mesh, again.mesh).only(made)
+        if mesh is None:
+            return again
+        snapshot = self._triangulator.fit(one.ready.frame, mesh)
+        locks = one.snapshot.locks.joined(again.locks).within(mesh)
+        return replace(snapshot, locks=locks)
 
     def _resumed(self, edited: _Found) -> _Found:
         """The edited frame, ready to be followed forwards: no number is given twice in a shot."""

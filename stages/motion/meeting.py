@@ -12,11 +12,14 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from stages.hand.locks import Locks
 from stages.mesh import Mesh, areas_of, centres_of, heights_of, next_corner
 from stages.motion.correspondence import kept_rows, kept_triangles
 
 LOWEST = 0.05
 """No triangle between two meshes becomes lower than this [px], or than it is in its own."""
+ROUNDS = 4
+"""Rings of vertices around what is held that may be pushed out of its way."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,7 +47,7 @@ class Meeting:
         islands there are."""
         pair = self.one, self.other
         apart = self._apart
-        sides = _common_sides(*pair, apart)
+        sides = _common_sides(pair, apart, self._pairs)
         parts = zip(pair, apart, sides, strict=True)
         links = [_neighbours(mesh, own, common) for mesh, own, common in parts]
         shift = self.one.triangle_count
@@ -77,22 +80,58 @@ class Meeting:
         Returns:
             A valid mesh, or None if there is none such.
         """
-        places = self._placed(share)
-        islands = self._islands[:2]
+        return self._mixed(np.full(len(self._pairs[0]), share), self.spread()[0] < line)
+
+    def only(self, locks: Locks) -> Mesh | None:
+        """The first mesh, but for what is held fast of the other one.
+
+        Args:
+            locks: What is held of the other mesh.
+
+        Returns:
+            A valid mesh, or None if there is none such.
+        """
+        other = self.other
+        corners = np.isin(other.vertex_ids, locks.vertices)
+        touched = corners[other.triangles].any(axis=1) | np.isin(other.triangle_ids, locks.bare)
+        touched |= locks.held(other).edges.reshape(-1, 3).any(axis=1)
+        theirs = self._islands[1]
+        inside = touched & (theirs >= 0)
+        comes = np.bincount(theirs[inside], minlength=self._islands[2]) > 0
+        shares = corners[self._pairs[1]].astype(np.float64)
+        for _ in range(ROUNDS):
+            mesh = self._mixed(shares, comes)
+            if mesh is not None:
+                return mesh
+            # what is held pushes those around it out of the way, as it does in the other mesh
+            folded = _folded(other, self._placed(shares)[1])
+            near = np.zeros(other.vertex_count, dtype=bool)
+            near[other.triangles[folded]] = True
+            shares = np.where(near[self._pairs[1]], 1.0, shares)
+        return None
+
+    def _mixed(self, shares: np.ndarray, comes: np.ndarray) -> Mesh | None:
+        """A mesh of both.
+
+        Args:
+            shares: How far each common vertex is on its way from one to the other, [N].
+            comes: Islands that are those of the other mesh, if that folds nothing, [K] bool.
+
+        Returns:
+            A valid mesh, or None if there is none such.
+        """
+        places = self._placed(shares)
+        islands, count = self._islands[:2], self._islands[2]
         bad = _folded(self.one, places[0]), _folded(self.other, places[1])
-        if bad[0][islands[0] < 0].any():
-            return None
-        count = self._islands[2]
         broken = [
-            np.bincount(i[b & (i >= 0)], minlength=count) > 0
-            for i, b in zip(islands, bad, strict=True)
+            np.bincount(mine[folds & (mine >= 0)], minlength=count) > 0
+            for mine, folds in zip(islands, bad, strict=True)
         ]
-        if (broken[0] & broken[1]).any():
+        if bad[1][islands[1] < 0].any() or (broken[0] & broken[1]).any():
             return None
-        comes = (self.spread()[0] < line) & ~broken[1] | broken[0]
-        stays = np.append(~comes, True)[islands[0]]
-        new = np.append(comes, False)[islands[1]]
-        return self._joined(places, stays, new)
+        comes = (comes & ~broken[1]) | broken[0]
+        stays = np.append(~comes, False)[islands[0]]
+        return self._joined(places, stays, np.append(comes, True)[islands[1]])
 
     @cached_property
     def _pairs(self) -> tuple[np.ndarray, np.ndarray]:
@@ -105,12 +144,12 @@ class Meeting:
         alike &= self.one.on_top_bottom[mine] == self.other.on_top_bottom[theirs]
         return mine[alike], theirs[alike]
 
-    def _placed(self, share: float) -> tuple[np.ndarray, np.ndarray]:
+    def _placed(self, shares: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Vertices of both meshes, those that both have in the same places, each [V, 2]."""
         mine, theirs = self._pairs
         begin, end = self.one.vertices[mine], self.other.vertices[theirs]
         vertices = self.one.vertices.copy(), self.other.vertices.copy()
-        vertices[0][mine] = vertices[1][theirs] = begin + share * (end - begin)
+        vertices[0][mine] = vertices[1][theirs] = begin + shares[:, None] * (end - begin)
         return vertices
 
     def _joined(
@@ -167,24 +206,30 @@ def _neighbours(mesh: Mesh, some: np.ndarray, common: np.ndarray) -> np.ndarray:
 
 
 def _common_sides(
-    one: Mesh, other: Mesh, apart: tuple[np.ndarray, np.ndarray]
+    meshes: tuple[Mesh, Mesh],
+    apart: tuple[np.ndarray, np.ndarray],
+    common: tuple[np.ndarray, np.ndarray],
 ) -> tuple[np.ndarray, np.ndarray]:
     """Half-edges of triangles that two meshes do not share, which are the same by their ends.
 
     Args:
-        one: A mesh.
-        other: Another one of the shot.
+        meshes: Two of the same shot.
         apart: Which triangles of each mesh the other lacks, [T] bool.
+        common: Vertices of each mesh that both have, [N].
 
     Returns:
-        Their numbers in both meshes, each [N].
+        Their numbers in both meshes, each [M].
     """
-    following = max(one.next_vertex_id, other.next_vertex_id)
+    following = max(mesh.next_vertex_id for mesh in meshes)
     found = []
-    for mesh, some in zip((one, other), apart, strict=True):
+    for mesh, some, both in zip(meshes, apart, common, strict=True):
         half_edges = np.flatnonzero(np.repeat(some, 3))
-        corners = mesh.vertex_ids[mesh.triangles.reshape(-1)]
-        keys = corners[half_edges] * following + corners[next_corner(half_edges)]
-        found.append((keys, half_edges))
+        corners = mesh.triangles.reshape(-1)
+        ends = np.stack([corners[half_edges], corners[next_corner(half_edges)]], axis=1)
+        shared = np.zeros(mesh.vertex_count, dtype=bool)
+        shared[both] = True
+        kept = shared[ends].all(axis=1)
+        ids = mesh.vertex_ids[ends[kept]]
+        found.append((ids[:, 0] * following + ids[:, 1], half_edges[kept]))
     _, mine, theirs = np.intersect1d(found[0][0], found[1][0], return_indices=True)
     return found[0][1][mine], found[1][1][theirs]
