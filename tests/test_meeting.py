@@ -18,7 +18,7 @@ from tests.meshes import WIDTH, random_mesh
 
 
 def changed(mesh: Mesh, seed: int, part: float = 0.1) -> Mesh:
-    """What a mesh became elsewhere: some flips, splits and collapses, inner vertices moved a bit."""
+    """What a mesh became elsewhere: some flips, splits and collapses, vertices moved a bit."""
     rng = np.random.default_rng(seed)
     for kind in range(3):
         edges = mesh.edge_half_edges[rng.random(mesh.edge_count) < part].astype(np.int64)
