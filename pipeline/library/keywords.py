@@ -88,6 +88,7 @@ class LookKeywords(TypedDict, total=False):
 
     styles: str | Sequence[str]
     regions: str | Sequence[str]
+    moves: str | Sequence[str]
     timeline: Name | None
     size: str | tuple[int, int] | None
     scale: float | None
@@ -125,6 +126,7 @@ class DrawKeywords(DeviceKeywords, total=False):
     """How one frame is drawn."""
 
     styles: str | Sequence[str]
+    moves: str | Sequence[str]
     size: str | tuple[int, int] | None
     scale: float | None
     fit: str
@@ -158,7 +160,7 @@ def _for_pictures(option: Option) -> bool:
     return described or option.dest in ("seed", "device", "threads")
 
 
-DRAWN = ("styles", "output_size", "scale", "fit", "background", "device", "threads")
+DRAWN = ("styles", "moves", "output_size", "scale", "fit", "background", "device", "threads")
 """Options that say how one frame is drawn."""
 
 TAKEN: dict[str, Callable[[Option], bool]] = {

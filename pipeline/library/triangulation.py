@@ -110,6 +110,7 @@ class Triangulation:
         size: str | tuple[int, int] | None = None,
         fit: str = "contain",
         background: str | None = None,
+        moves: str | Sequence[str] = (),
         device: str | None = None,
         threads: int | None = None,
     ) -> np.ndarray:
@@ -122,23 +123,26 @@ class Triangulation:
             size: Width and height instead [px], or a text as on the command line: `1080x`.
             fit: How the picture gets into another shape: `contain`, `cover` or `stretch`.
             background: Colour of bars, and of what transparent styles leave open.
+            moves: How its triangles move, one or several: `explode:amount=0.3`.
             device: Where kernels run; if left out, where they ran before.
             threads: Threads of the CPU; if left out, as many as before.
 
         Returns:
             Code values, [rows, columns, 3] uint8, or [rows, columns, 4] with straight alpha if
-            no style is opaque.
+            no style is opaque, or moves leave holes.
 
         Raises:
             OptionError: If a value is impossible, or a style needs the picture and it was not kept.
         """
         origin = self._origin
         options: dict[str, Any] = {"styles": styles, "scale": scale, "size": size}
-        options |= {"fit": fit, "background": background}
+        options |= {"fit": fit, "background": background, "moves": moves}
         options["device"] = origin.device if device is None else device
         options["threads"] = origin.threads if threads is None else threads
         model = COLOR_MODELS[origin.color]
-        return drawn(self._snapshot, origin.frame, model, given_values("draw", options))
+        return drawn(
+            self._snapshot, origin.frame, origin.time, model, given_values("draw", options)
+        )
 
     def _repr_png_(self) -> bytes:
         """What a notebook shows."""

@@ -72,9 +72,18 @@ class Drawing:
         if solved.is_shown:
             snapshot = solved.snapshot
             index, shown = snapshot.frame_index, snapshot.pts * snapshot.time_base
-            looks = self._stage.looks_at(index, shown - self._start_time, solved.shot)
+            time = shown - self._start_time
+            looks = self._stage.looks_at(index, time, solved.shot)
             masks = {name: self._masks[name].at(index) for name in looks.masks}
-            view = Posed(snapshot, self._fading, solved.source, masks, solved.shares, self._lay)
+            view = Posed(
+                snapshot,
+                self._fading,
+                solved.source,
+                masks,
+                solved.shares,
+                self._lay,
+                float(time),
+            )
             pixels = self._stage.draw(looks, view)
             self._encoder.write(pixels, snapshot.pts, snapshot.time_base, snapshot.frame_index)
 

@@ -6,6 +6,7 @@ from typing import Any
 
 from stages.look.framing import Framing, framing_of
 from stages.masks.region import Region
+from stages.moves import MOVES, Move
 from warp_kernels.color_model import CONSTANT, LINEAR, ColorModel
 from warp_kernels.errors import OptionError
 from warp_kernels.limits import MAX_SIDE
@@ -48,6 +49,16 @@ class Look:
         },
     )
     """Styles inside of masks, over `styles`, bottom to top."""
+    moves: tuple[Move, ...] = field(
+        default=(),
+        metadata={
+            "help": "how triangles move while they are drawn, repeatable, one after the other",
+            "registry": MOVES,
+            "metavar": "SPEC",
+            "flag": "move",
+        },
+    )
+    """How triangles move, the first one first."""
     output_size: tuple[int, int] | None = field(
         default=None,
         metadata={
