@@ -62,5 +62,6 @@ def drawn(
             snapshot = Triangulator(device, size, options, fitted).fit(frame, snapshot.mesh)
         wardrobe = Wardrobe(device, size, framing.picture, look, model)
         source = None if frame is None else frame.pixels
-        pixels = wardrobe.draw(look, Posed(snapshot, None, source, {}, None, None, time or 0.0))
+        view = Posed(snapshot, None, source, {}, None, None, {}, time or 0.0)
+        pixels = wardrobe.draw(look, view)
     return framed(pixels, framing, look.backdrop(model))

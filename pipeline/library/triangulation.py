@@ -111,6 +111,8 @@ class Triangulation:
         fit: str = "contain",
         background: str | None = None,
         moves: str | Sequence[str] = (),
+        palette: str | None = None,
+        grade: str | None = None,
         device: str | None = None,
         threads: int | None = None,
     ) -> np.ndarray:
@@ -124,6 +126,8 @@ class Triangulation:
             fit: How the picture gets into another shape: `contain`, `cover` or `stretch`.
             background: Colour of bars, and of what transparent styles leave open.
             moves: How its triangles move, one or several: `explode:amount=0.3`.
+            palette: Colours that those of the triangles become: `#123,#fa0,white`, a file.
+            grade: Change of their colours: `exposure=0.5,saturation=0.8`.
             device: Where kernels run; if left out, where they ran before.
             threads: Threads of the CPU; if left out, as many as before.
 
@@ -137,6 +141,7 @@ class Triangulation:
         origin = self._origin
         options: dict[str, Any] = {"styles": styles, "scale": scale, "size": size}
         options |= {"fit": fit, "background": background, "moves": moves}
+        options |= {"palette": palette, "grade": grade}
         options["device"] = origin.device if device is None else device
         options["threads"] = origin.threads if threads is None else threads
         model = COLOR_MODELS[origin.color]

@@ -13,6 +13,8 @@ from stages.masks.region import Region
 from stages.moves.staged import moved_by
 from stages.render import Renderer
 from stages.snapshot import Snapshot
+from stages.toning.choices import Choices
+from stages.toning.tone import Tone
 from warp_kernels.color_model import ColorModel
 from warp_kernels.device.device import Device
 from warp_kernels.drawing.coats import coats_of
@@ -40,6 +42,8 @@ class Posed:
     """Which followed regions its triangles belong to, for all regions of the film [T, R]."""
     lay: Lay | None
     """How strokes lie."""
+    choices: Mapping[int, Choices]
+    """Which colours of their palettes triangles have taken, by the number of the section."""
     time: float = 0.0
     """When it is shown [s from the beginning of the film]."""
 
@@ -156,27 +160,30 @@ class Wardrobe:
         """
         return any(channels_of(coats_of(*one.parts)) == 4 for one in self._moving(look)[-1:])
 
-    def draw(self, look: Look, view: Posed) -> np.ndarray:
+    def draw(self, look: Look, view: Posed, section: int = 0) -> np.ndarray:
         """Draw a frame.
 
         Args:
             look: How.
             view: The frame.
+            section: Number of the section whose look it is.
 
         Returns:
             As `Renderer.render`.
         """
+        tone = look.tone, view.choices.get(section)
         moved = moved_by(look.moves, view.snapshot, view.time)
         if moved is None:
-            return self._render(self._still(look), view)
+            return self._render(self._still(look), view, tone)
         *sheet, above = self._moving(look)
-        ground = self._render(sheet[0], view) if sheet else None
-        return self._render(above, view, moved, ground)
+        ground = self._render(sheet[0], view, tone) if sheet else None
+        return self._render(above, view, tone, moved, ground)
 
     def _render(
         self,
         stack: Stack,
         view: Posed,
+        tone: tuple[Tone, Choices | None],
         moved: Moved | None = None,
         ground: np.ndarray | None = None,
     ) -> np.ndarray:
@@ -193,6 +200,7 @@ class Wardrobe:
             view.shares,
             view.lay,
             None if everything else columns,
+            *tone,
             moved,
             ground,
         )
