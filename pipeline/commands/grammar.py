@@ -5,6 +5,7 @@ import re
 from typing import Any, NoReturn
 
 from pipeline.commands.examples import ABOUT_ALL, EXAMPLES, shown
+from pipeline.commands.hearing.grammar import LISTEN_ABOUT, LISTEN_USAGE, add_listen_options
 from pipeline.commands.style_list import registry_help
 from pipeline.commands.unknown import no_command, unknown_arguments
 from pipeline.options.command_line import add_job_options
@@ -25,6 +26,7 @@ commands:
   measure SOURCE OUTPUT      how close an output is to its source, and how coherent
   styles [NAME]              styles and moves with their parameters; --sheet draws them
   timeline SHOW.toml|NAME --check CLIP   what a timeline does when, without solving
+  listen SONG|CLIP -o SONG.beats.json   beats, bars, onsets and strengths of a sound
   completion bash|zsh|fish   a script by which a shell completes all of this
   help [COMMAND]             this text, or the options of a command
 
@@ -107,6 +109,7 @@ def build_parser() -> OneLineParser:
     _add_measure(commands)
     _add_styles(commands)
     _add_timeline(commands)
+    _add_listen(commands)
     _add_completion(commands)
     _add_help(commands)
     return parser
@@ -333,6 +336,11 @@ def _add_timeline(commands: Any) -> None:
     parser.add_argument("--overwrite", action="store_true", help="replace an existing picture")
     parser.add_argument("--json", action="store_true", help="print JSON")
     add_job_options(parser, "timeline")
+
+
+def _add_listen(commands: Any) -> None:
+    parser = _command(commands, "listen", LISTEN_ABOUT, LISTEN_USAGE)
+    add_listen_options(parser)
 
 
 def _add_completion(commands: Any) -> None:
