@@ -216,11 +216,12 @@ def run_completion(arguments: argparse.Namespace) -> None:
     from pipeline.commands.completion import SHELLS
     from pipeline.commands.completion.words import words_of
     from pipeline.timeline.timeline import shipped_timelines
+    from stages.moves import MOVES
     from warp_kernels.styles import STYLES
 
     known = build_parser().commands()
     shipped = tuple(shipped_timelines())
-    listed = {"help": tuple(known), "styles": tuple(STYLES), "timeline": shipped}
+    listed = {"help": tuple(known), "styles": (*STYLES, *MOVES), "timeline": shipped}
     print(SHELLS[arguments.shell](words_of(known, listed)), end="")
 
 

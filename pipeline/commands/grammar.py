@@ -24,7 +24,7 @@ commands:
   join A.mtrk B.mtrk ... -o OUT.mtrk   put the tracks of ranges together
   info FILE                  what a file is: a source or a mesh track
   measure SOURCE OUTPUT      how close an output is to its source, and how coherent
-  styles [NAME]              all styles and their parameters, or one; --sheet draws them
+  styles [NAME]              styles and moves with their parameters; --sheet draws them
   timeline SHOW.toml|NAME --check CLIP   what a timeline does when, without solving
   listen SONG|CLIP -o SONG.beats.json   beats, bars, onsets and strengths of a sound
   completion bash|zsh|fish   a script by which a shell completes all of this
@@ -35,7 +35,7 @@ trimotion COMMAND --help tells the options of a command, too.
 """
 
 WHERE_PARAMETERS = """\
-trimotion styles lists every style with its parameters, trimotion styles NAME those of one.
+trimotion styles lists every style and move with its parameters, trimotion styles NAME those of one.
 
 """
 

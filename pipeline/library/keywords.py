@@ -94,6 +94,7 @@ class LookKeywords(TypedDict, total=False):
 
     styles: str | Sequence[str]
     regions: str | Sequence[str]
+    moves: str | Sequence[str]
     timeline: Name | None
     beats: Name | None
     palette: Name | None
@@ -135,6 +136,7 @@ class DrawKeywords(DeviceKeywords, total=False):
     """How one frame is drawn."""
 
     styles: str | Sequence[str]
+    moves: str | Sequence[str]
     palette: Name | None
     grade: str | None
     size: str | tuple[int, int] | None
@@ -171,7 +173,7 @@ def _for_pictures(option: Option) -> bool:
 
 
 DRAWN = (
-    *("styles", "palette", "grade", "output_size", "scale", "fit", "background"),
+    *("styles", "moves", "palette", "grade", "output_size", "scale", "fit", "background"),
     *("device", "threads"),
 )
 """Options that say how one frame is drawn."""
