@@ -21,8 +21,8 @@ def heard_for(timeline: Timeline, hearing: Hearing, info: MediaInfo) -> Told:
     """What a timeline hears; nothing if it needs nothing.
 
     Beats come from a file if one is named, else from the sound: the song, or the film's own. Where
-    there is no beat in it the timeline's tempo counts. Strengths and onsets of which such a file does
-    not tell come from the sound.
+    there is no beat in it the timeline's tempo counts. Strengths and onsets of which such a file
+    does not tell come from the sound.
 
     Args:
         timeline: The timeline; `--beats` took the place of what it names.
