@@ -221,7 +221,7 @@ def plot(found: dict[str, list[tuple[float, float]]], path: Path, title: str) ->
     labels = (
         "pixels (1,500 triangles)",
         "triangles (1280x720)",
-        "share of the picture that changes (1280x720, 1,500)",
+        "share that changes (1280x720, 1,500)",
     )
     for panel, label, (kind, points) in zip(panels, labels, found.items(), strict=True):
         x, y = zip(*points, strict=True)
