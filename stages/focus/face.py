@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-FACE_GAIN, FACE_RADIUS = 4.6, 0.55
+FACE_GAIN, FACE_RADIUS = 4.8, 0.55
 """What is added over a face, and how far it reaches from its middle [face sizes]."""
 EYE_GAIN, EYE_RADII = 5.0, (0.12, 0.08)
 """The same over each eye; along the line through the eyes and across it [face sizes]."""
