@@ -62,6 +62,14 @@ def read_limit(limits: wp.array3d(dtype=wp.uint8), triangle: int, side: int) -> 
 
 
 @wp.func
+def shown_color(color: wp.vec3d, limits: wp.array3d(dtype=wp.uint8), triangle: int) -> wp.vec3d:
+    """A colour within the limits of its triangle."""
+    low = read_limit(limits, triangle, 0)
+    high = read_limit(limits, triangle, 1)
+    return wp.min(wp.max(color, low), high)
+
+
+@wp.func
 def farthest(a: wp.vec3d, b: wp.vec3d) -> wp.float64:
     """How far the most different channels lie apart."""
     away = wp.abs(a - b)
@@ -105,6 +113,17 @@ def channel_by_channel(color: wp.vec3d) -> Bytes:
             value = wp.uint8(wp.clamp(color[channel], wp.float64(0.0), wp.float64(255.0)))
             values[wp.static(CHANNELS) * n + channel] = value
     return values
+
+
+@wp.func
+def bytes_around(color: wp.vec3d) -> tuple[Bytes, Bytes]:
+    """Bounds that hold what is near a colour for sure, with something to spare for rounding.
+
+    No colour is farther beyond 0 or 255 than the leeway, so that bytes limit none of them.
+    """
+    spare = wp.float64(wp.static(LEEWAY - 2.0))
+    away = wp.vec3d(spare, spare, spare)
+    return channel_by_channel(color - away), channel_by_channel(color + away)
 
 
 @wp.func_native("""
@@ -200,28 +219,20 @@ def nearby_kernel(model: ColorModel) -> Any:
         counts_out[triangle] = 0
         if energies[triangle] <= wp.float64(wp.static(0.5 * LEEWAY * LEEWAY)):
             return  # not one pixel can be that far off
-        low = read_limit(limits, triangle, 0)
-        high = read_limit(limits, triangle, 1)
         corners = triangles[triangle]
-        height = pixels.shape[0]
-        walk = walk_triangle(
-            vertices[corners[0]], vertices[corners[1]], vertices[corners[2]], height
-        )
+        a, b, c = vertices[corners[0]], vertices[corners[1]], vertices[corners[2]]
+        walk = walk_triangle(a, b, c, pixels.shape[0])
         count = int(0)
         worst = wp.vec3d()
         changes = wp.vec3d()
         squares = wp.float64(0.0)
         is_told = wp.isinf(energies[triangle])
         color = color_at(coefficients, triangle, 0, 0)
-        # bounds with something to spare, for rounding; no colour is farther beyond 0 or 255 than
-        # the leeway, so that bytes limit none of them
-        spare = wp.float64(wp.static(LEEWAY - 2.0))
-        least = channel_by_channel(color - wp.vec3d(spare, spare, spare))
-        most = channel_by_channel(color + wp.vec3d(spare, spare, spare))
+        least, most = bytes_around(color)
         for channel in range(3):
             places_out[triangle, channel] = wp.vec2i(0, 0)
         while walk.row + 1 < walk.end:
-            walk = step_down(walk, height)
+            walk = step_down(walk, pixels.shape[0])
             columns = columns_of(walk, pixels.shape[1])
             column = columns[0]
             while column < columns[1]:
@@ -235,11 +246,10 @@ def nearby_kernel(model: ColorModel) -> Any:
                 if is_told:
                     squares += wp.dot(color - value, color - value)
                 if farthest(color, value) > wp.float64(wp.static(LEEWAY)):
-                    shown = wp.min(wp.max(color, low), high)
+                    shown = shown_color(color, limits, triangle)
                     near = range_around(pixels, walk.row, column, shown)
                     asked = wp.min(wp.max(shown, near.low), near.high)
-                    if farthest(shown, asked) > wp.float64(0.0):
-                        count += 1
+                    count += wp.where(farthest(shown, asked) > wp.float64(0.0), 1, 0)
                     for channel in range(3):
                         if wp.abs(asked[channel] - shown[channel]) > worst[channel]:
                             worst[channel] = wp.abs(asked[channel] - shown[channel])
