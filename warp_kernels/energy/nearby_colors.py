@@ -222,15 +222,13 @@ def nearby_kernel(model: ColorModel) -> Any:
         corners = triangles[triangle]
         a, b, c = vertices[corners[0]], vertices[corners[1]], vertices[corners[2]]
         walk = walk_triangle(a, b, c, pixels.shape[0])
-        count = int(0)
-        worst = wp.vec3d()
-        changes = wp.vec3d()
-        squares = wp.float64(0.0)
+        count, squares = int(0), wp.float64(0.0)
+        worst, changes = wp.vec3d(), wp.vec3d()
         is_told = wp.isinf(energies[triangle])
         color = color_at(coefficients, triangle, 0, 0)
         least, most = bytes_around(color)
         for channel in range(3):
-            places_out[triangle, channel] = wp.vec2i(0, 0)
+            places_out[triangle, channel] = wp.vec2i()
         while walk.row + 1 < walk.end:
             walk = step_down(walk, pixels.shape[0])
             columns = columns_of(walk, pixels.shape[1])
