@@ -92,6 +92,7 @@ class LookKeywords(TypedDict, total=False):
 
     styles: str | Sequence[str]
     regions: str | Sequence[str]
+    moves: str | Sequence[str]
     timeline: Name | None
     palette: Name | None
     grade: str | None
@@ -131,6 +132,7 @@ class DrawKeywords(DeviceKeywords, total=False):
     """How one frame is drawn."""
 
     styles: str | Sequence[str]
+    moves: str | Sequence[str]
     palette: Name | None
     grade: str | None
     size: str | tuple[int, int] | None
@@ -167,7 +169,7 @@ def _for_pictures(option: Option) -> bool:
 
 
 DRAWN = (
-    *("styles", "palette", "grade", "output_size", "scale", "fit", "background"),
+    *("styles", "moves", "palette", "grade", "output_size", "scale", "fit", "background"),
     *("device", "threads"),
 )
 """Options that say how one frame is drawn."""

@@ -81,7 +81,7 @@ class Drawing:
         self._follow(solved)
         if solved.is_shown:
             snapshot = solved.snapshot
-            index = solved.standing.frame
+            index, shown = solved.standing.frame, solved.standing.time
             looks = self._looks_at(solved)
             masks = {name: self._masks[name].at(index) for name in looks.masks}
             view = Posed(
@@ -92,6 +92,7 @@ class Drawing:
                 solved.shares,
                 self._lay,
                 self._choices,
+                float(shown - self._start_time),
             )
             pixels = self._stage.draw(looks, view)
             if solved.blended_into is not None:

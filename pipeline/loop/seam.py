@@ -9,7 +9,7 @@ from pipeline.options.seam import Seam
 from pipeline.options.solve_options import SolveOptions
 from stages.frame import Frame
 from stages.media import FrameRange, open_decoder
-from stages.metrics import change, signature
+from stages.metrics.signature import change, signature
 from warp_kernels.errors import OptionError
 
 LEADS = 2.0

@@ -9,7 +9,7 @@ from typing import TypeVar
 from pipeline.envelope import InShot
 from pipeline.track.cuts import read_cuts
 from stages.frame import Frame
-from stages.metrics import Signature, change, likeness, signature
+from stages.metrics.signature import Signature, change, likeness, signature
 from warp_kernels.errors import OptionError
 
 Item = TypeVar("Item")

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from stages.look.framing import Framing, framing_of
 from stages.masks.region import Region
+from stages.moves import MOVES, Move
 from stages.toning.grade import Grade
 from stages.toning.palette import Palette
 from warp_kernels.color_model import CONSTANT, LINEAR, ColorModel
@@ -54,6 +55,16 @@ class Look:
         },
     )
     """Styles inside of masks, over `styles`, bottom to top."""
+    moves: tuple[Move, ...] = field(
+        default=(),
+        metadata={
+            "help": "how triangles move while they are drawn, repeatable, one after the other",
+            "registry": MOVES,
+            "metavar": "SPEC",
+            "flag": "move",
+        },
+    )
+    """How triangles move, the first one first."""
     palette: Palette | None = field(
         default=None,
         metadata={

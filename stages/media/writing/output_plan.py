@@ -104,6 +104,23 @@ def check_output(
     return plan
 
 
+def keeps_alpha(path: str | Path, options: EncodeOptions) -> bool:
+    """Whether an output has room for transparency.
+
+    Args:
+        path: Output file, or a pattern of numbered stills.
+        options: How to write.
+
+    Raises:
+        OptionError: If there is no such codec.
+    """
+    ending = Path(path).suffix.lower()
+    if ending in CONTAINERS and NumberedPattern.parse(path) is None:
+        encoder = find_encoder(options.codec or CONTAINERS[ending].codec)
+        return encoder.alpha_format is not None and options.pixel_format is None
+    return ending not in (".jpg", ".jpeg")
+
+
 def _plan_video(
     target: Path, ending: str, source: MediaInfo, size: tuple[int, int], options: EncodeOptions
 ) -> OutputPlan:
