@@ -154,6 +154,8 @@ class Stage:
         elif pixels.shape[2] == 4 and backdrop is None:
             backdrop = BLACK
         pixels = framed(pixels, self._framing, backdrop)
+        if self._is_alpha:  # a background has filled what was open
+            pixels = with_alpha(pixels)
         return thinned(pixels, backdrop or BLACK, scene.opacity)
 
 

@@ -50,11 +50,11 @@ class Explode(Passing):
             distance / size + 0.3 * self.chaos * (resting.chance(1) - 0.5), 1.0
         )
         run = np.maximum(amount - np.maximum(late, 0.0), 0.0) / (1.0 - self.wait)
-        way = run * run / (run + 0.25) * 1.25  # as fast as ever after a quarter
+        way = 1.1 * run * run / (run + 0.3)  # the speed is reached little by little
         bend = self.chaos * 1.6 * (resting.chance(2) - 0.5)
         angle = np.arctan2(away[:, 1], away[:, 0]) + bend
-        speed = self.spread * size * (0.3 + self.chaos * 0.5 * resting.chance(3))
-        nearer = self.spread * (0.15 + self.chaos * (resting.chance(4) - 0.5)) * way
+        speed = self.spread * size * (0.12 + self.chaos * 0.6 * resting.chance(3))
+        nearer = self.spread * (0.1 + self.chaos * (resting.chance(4) - 0.5)) * way
         zoom = 1.0 / (1.0 - np.clip(nearer, -6.0, 0.8))
         shift = (way * speed)[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
         shift = (away + shift) * zoom[:, None] - away

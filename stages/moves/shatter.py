@@ -54,7 +54,7 @@ class Shatter(Passing):
         shift[:, 0] += 0.1 * resting.diagonal * self.force * (resting.chance(2) - 0.5) * fall
         # what lies highest and falls last must still get out of the picture
         height = resting.size[1]
-        shift[:, 1] += height * fall * (1.6 * (1.0 + 0.4 * resting.chance(3)) * fall - 0.12)
+        shift[:, 1] += height * fall * (1.3 * (1.0 + 0.3 * resting.chance(3)) * fall - 0.1)
         nearer = 0.45 * push * (0.3 + resting.chance(4))
         zoom = 1.0 / (1.0 - np.clip(nearer, -6.0, 0.8))
         turns = 2.0 * np.pi * self.turn * fall * (0.4 + 1.2 * resting.chance(5))

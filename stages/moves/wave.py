@@ -55,7 +55,7 @@ class Wave(Move):
         metadata={"help": "where rings begin", "unit": "of the height", "range": (-1.0, 2.0)},
     )
     shine: float = field(
-        default=0.35, metadata={"help": "how bright and dark slopes are", "range": (0.0, 1.0)}
+        default=0.25, metadata={"help": "how bright and dark slopes are", "range": (0.0, 1.0)}
     )
     free: bool = field(default=False, metadata={"help": "the border of the picture moves along"})
 
