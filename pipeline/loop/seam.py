@@ -7,6 +7,7 @@ import numpy as np
 
 from pipeline.options.seam import Seam
 from pipeline.options.solve_options import SolveOptions
+from stages.flows.view import View
 from stages.frame import Frame
 from stages.media import FrameRange, open_decoder
 from stages.metrics.signature import change, signature
@@ -57,7 +58,7 @@ def _measured(options: SolveOptions) -> tuple[int, int, bool, int]:
         opening, before, steps = None, None, []
         first = last = earliest
         for frame in decoder:
-            seen = signature(frame.pixels)
+            seen = signature(View(frame.pixels))
             if before is None:
                 opening, first = seen, frame.index
             else:
