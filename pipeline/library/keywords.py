@@ -81,6 +81,9 @@ class SolveKeywords(AnimatorKeywords, SourceKeywords, total=False):
     preset: Name | None
     timeline: Name | None
     loop: int
+    beats: Name | None
+    audio_mode: Name
+    audio_offset: float
     edits: Any
     jobs: int
     overwrite: bool
@@ -94,6 +97,7 @@ class LookKeywords(TypedDict, total=False):
     regions: str | Sequence[str]
     moves: str | Sequence[str]
     timeline: Name | None
+    beats: Name | None
     palette: Name | None
     grade: str | None
     size: str | tuple[int, int] | None
@@ -112,7 +116,8 @@ class OutputKeywords(TypedDict, total=False):
     pixel_format: str | None
     encoder_preset: str | None
     audio: bool
-    audio_mode: str
+    audio_mode: Name
+    audio_offset: float
     overwrite: bool
 
 

@@ -70,7 +70,7 @@ class Drawing:
     def notes(self) -> list[str]:
         """Choices that were made, one sentence each; complete after the block."""
         fitted = _fitted(self._framing)
-        return [*self._hidden, *fitted, *self._encoder.notes]
+        return [*self._hidden, *fitted, *self._stage.notes, *self._encoder.notes]
 
     def draw(self, solved: Solved) -> None:
         """Draw and encode a frame, or an earlier one that has been waiting for it."""

@@ -85,6 +85,11 @@ class Stage:
             is_open = keeps_alpha and wardrobe.has_holes(scene.look)
             self._is_alpha |= backdrop is None and (is_open or wardrobe.is_transparent(scene.look))
 
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What is told of what a timeline hears, one sentence each."""
+        return () if self._show is None else self._show.notes
+
     def looks_at(self, index: int, shown: Fraction, shot: int) -> Looks:
         """What is drawn at a frame.
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
+from pipeline.options.hearing import Hearing
 from stages.look.framing import Framing, framing_of
 from stages.masks.region import Region
 from stages.moves import MOVES, Move
@@ -141,6 +142,8 @@ class Look:
         },
     )
     """A file with what changes over time, or the name of a shipped one."""
+    hearing: Hearing = field(default_factory=Hearing)
+    """What the file hears."""
     sections: tuple["Look", ...] = ()
     """Looks that the file gives to parts of the film, in place of this one."""
     score: Any = None

@@ -144,7 +144,8 @@ class Heard:
         if found is None:
             known = ", ".join(self.envelopes) or "none: the file holds beats only"
             raise OptionError(
-                f"{name}: nothing tells how strong it is ({known}); listen to a sound"
+                f"{name}: nothing tells how strong it is ({known}); "
+                "give --audio SONG, or what trimotion listen writes"
             )
         return found
 

@@ -12,7 +12,7 @@ from stages.media.expected_frames import expected_frames
 from stages.media.frame_range import FrameRange
 from stages.media.naming import STILL_ENDINGS, NumberedPattern
 from stages.media.reading.info import MediaInfo
-from stages.media.sound.audio_plan import AudioPlan, plan_audio
+from stages.media.sound.audio_plan import AudioPlan, plan_audio, plan_song
 from stages.media.writing.codecs import CONTAINERS, Container, VideoCodec, find_encoder
 from stages.media.writing.commit import output_error, remove_left_overs, true_place
 from stages.media.writing.encode_options import EncodeOptions
@@ -136,9 +136,12 @@ def _plan_video(
     _check_quality(encoder, options)
     notes = []
     audio = None
-    if options.audio and source.audio_codec is not None:
+    if options.audio and (options.song is not None or source.audio_codec is not None):
         if container.audio is None:
             notes.append(f"{ending} holds no sound: the audio is left out")
+        elif options.song is not None:
+            audio = plan_song(options.song, container)
+            notes += audio.notes
         else:
             audio = plan_audio(source.path, container, options.audio_mode)
             notes += audio.notes if audio else []
@@ -193,7 +196,8 @@ def _plan_stills(
         )
     if options.crf is not None and not 0 <= options.crf <= 51:
         raise OptionError(f"crf {options.crf}: choose a value from 0 to 51")
-    notes = ["stills hold no sound: the audio is left out"] if source.audio_codec else []
+    has_sound = source.audio_codec is not None or options.song is not None
+    notes = ["stills hold no sound: the audio is left out"] if has_sound else []
     if not options.audio:
         notes = []
     return OutputPlan(target, pattern, None, None, "", size[0], size[1], None, tuple(notes))
@@ -241,7 +245,8 @@ def _check_place(
     if place.is_symlink() or (place.exists() and not place.is_file()):
         raise OutputError(plan.path, "is no regular file", "give the name of a file")
     existing = _existing(plan, frame_range)
-    if _is_source(plan, existing, source):
+    song = None if options.song is None else options.song.resolve()
+    if _is_source(plan, existing, source) or any(one.resolve() == song for one in existing):
         raise OutputError(plan.path, "is the input itself", "choose another name")
     if existing and not options.overwrite:
         raise OutputError(existing[0], "exists already", "choose another name or --overwrite")
