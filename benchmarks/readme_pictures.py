@@ -95,6 +95,9 @@ PICTURES: dict[str, Picture] = {
         600,
         quality=86,
     ),
+    "loop": Picture(
+        [of("out/loop.mp4", 33, 39, 42), of("out/loop.mp4", 44, 47, 0)], 480, quality=84
+    ),
     "layouts": Picture(
         [
             stills("out/poisson.png", "out/outlines.png", "out/hex.png"),

@@ -11,6 +11,7 @@ wait for each other to be smoothed.
 
 from dataclasses import dataclass, field
 from enum import Enum, auto
+from fractions import Fraction
 
 import numpy as np
 
@@ -71,6 +72,18 @@ class Prepared(InShot):
         return Solved(self.shot, snapshot, self.frame.pixels if keeps_picture else None)
 
 
+@dataclass(frozen=True, slots=True)
+class Standing:
+    """A frame of the output in whose look another one is drawn."""
+
+    frame: int
+    """Its number."""
+    time: Fraction
+    """When it is shown [s on the source's clock]."""
+    shot: int
+    """Number of the frame with which its shot begins."""
+
+
 @dataclass(frozen=True, eq=False, slots=True)
 class Solved(Envelope):
     """What a frame became."""
@@ -88,3 +101,16 @@ class Solved(Envelope):
     from them."""
     is_shown: bool = True
     """Whether it is part of the output, or only there for those around it."""
+    begins: bool = False
+    """Whether nothing that was given before belongs to it: a loop is gone through anew."""
+    blended_into: Standing | None = None
+    """The frame into which it is blended, if it closes a loop: it is not shown by itself."""
+
+    @property
+    def standing(self) -> Standing:
+        """The frame of the output in whose look it is drawn: itself, or that which it goes into."""
+        if self.blended_into is not None:
+            return self.blended_into
+        snapshot = self.snapshot
+        time = snapshot.pts * snapshot.time_base
+        return Standing(snapshot.frame_index, time, self.shot)

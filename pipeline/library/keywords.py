@@ -80,6 +80,7 @@ class SolveKeywords(AnimatorKeywords, SourceKeywords, total=False):
 
     preset: Name | None
     timeline: Name | None
+    loop: int
     beats: Name | None
     audio_mode: Name
     audio_offset: float

@@ -4,6 +4,8 @@ from contextlib import ExitStack
 from dataclasses import replace
 from types import TracebackType
 
+import numpy as np
+
 from pipeline.envelope import Solved
 from pipeline.look.region_masks import own_mask
 from pipeline.look.smooth import Smoother
@@ -13,6 +15,7 @@ from stages.look.fading import Fading
 from stages.look.framing import Framing
 from stages.look.paint import paint_of
 from stages.look.strokes import Strokes
+from stages.look.transitions import faded
 from stages.masks.regions import Mask, open_masks
 from stages.media import MediaInfo, check_output, open_encoder
 from stages.toning.choices import Choices
@@ -41,8 +44,11 @@ class Drawing:
         self._hidden = look.hidden
         self._start_time = info.start_time
         self._stage = open_stage(device, job, info, self._framing)
-        names = dict.fromkeys(region.mask for region in look.unfollowed)
-        self._masks = {name: Mask(name, picture) for name in names}
+        self._unfollowed = dict.fromkeys(region.mask for region in look.unfollowed)
+        self._picture = picture
+        self._masks = {name: Mask(name, picture) for name in self._unfollowed}
+        self._seam = options.seam
+        self._leading: dict[int, np.ndarray] = {}  # what is blended into frames to come
         self._encoder = open_encoder(
             output.path,
             _shown(info, self._framing),
@@ -75,7 +81,7 @@ class Drawing:
         self._follow(solved)
         if solved.is_shown:
             snapshot = solved.snapshot
-            index, shown = snapshot.frame_index, snapshot.pts * snapshot.time_base
+            index, shown = solved.standing.frame, solved.standing.time
             looks = self._looks_at(solved)
             masks = {name: self._masks[name].at(index) for name in looks.masks}
             view = Posed(
@@ -89,13 +95,19 @@ class Drawing:
                 float(shown - self._start_time),
             )
             pixels = self._stage.draw(looks, view)
+            if solved.blended_into is not None:
+                self._leading[index] = pixels
+                return
+            leading, partner = self._leading.pop(index, None), self._seam.partner_of(index)
+            if leading is not None and partner is not None:
+                pixels = faded(pixels, leading, partner[1])
             self._encoder.write(pixels, snapshot.pts, snapshot.time_base, snapshot.frame_index)
 
     def _looks_at(self, solved: Solved) -> Looks:
         """What is drawn at a frame."""
-        snapshot = solved.snapshot
-        shown = snapshot.pts * snapshot.time_base - self._start_time
-        return self._stage.looks_at(snapshot.frame_index, shown, solved.shot)
+        standing = solved.standing
+        shown = standing.time - self._start_time
+        return self._stage.looks_at(standing.frame, shown, standing.shot)
 
     def _hold_colors(self, solved: Solved, *, begins: bool) -> None:
         """Let triangles keep the colours of palettes that they took in the frame before."""
@@ -113,7 +125,9 @@ class Drawing:
 
     def _follow(self, solved: Solved) -> None:
         """Take on what lies on a frame from the one before, and what lingers of it."""
-        begins, snapshot = solved.shot != self._shot, solved.snapshot
+        begins, snapshot = solved.begins or solved.shot != self._shot, solved.snapshot
+        if solved.begins:
+            self._open_masks()
         self._shot = solved.shot
         if self._lays_strokes:
             known = None if begins else self._strokes
@@ -152,6 +166,11 @@ class Drawing:
             closing.callback(self._close_masks)
             for solved in self._smoother.rest():
                 self._draw(solved)
+
+    def _open_masks(self) -> None:
+        """Read masks from their beginning again."""
+        self._close_masks()
+        self._masks = {name: Mask(name, self._picture) for name in self._unfollowed}
 
     def _close_masks(self) -> None:
         for mask in self._masks.values():

@@ -75,8 +75,11 @@ def _range(wanted: FrameRange, track: TrackReader) -> FrameRange:
     """The frames that are drawn: those asked for, else all that the track is meant to hold."""
     if not track.rows:
         raise TrackError(f"{track.path}: holds no frame yet; solve it again")
+    seam = track.header.solve.seam
     if wanted.is_whole:
         wanted = track.header.frame_range
+        if seam.over:  # what leads over the seam is not shown by itself
+            wanted = FrameRange(seam.opens, seam.closes)
         if not track.header.finished:
             wanted = replace(wanted, last=track.rows[-1].frame)
     if not track.rows_in(wanted):

@@ -66,7 +66,7 @@ class Smoother:
         if self._reach == 0:
             yield solved
             return
-        if self._window and self._window[-1].solved.shot != solved.shot:
+        if self._window and (solved.begins or self._window[-1].solved.shot != solved.shot):
             yield from self.rest()
         self._window.append(self._linked(solved))
         if len(self._window) > self._done + self._reach:

@@ -29,7 +29,22 @@ def source_pictures(
     if not look.needs_source or not rows:
         yield from (None for _ in rows)
         return
-    wanted = {row.frame for row in rows}
-    around = FrameRange(rows[0].frame, rows[-1].frame)
-    with open_decoder(options.source, around, read=options.read) as decoder:
-        yield from (frame.pixels for frame in decoder if frame.index in wanted)
+    for run in runs_of(options, rows):
+        around = FrameRange(run[0], run[-1])
+        with open_decoder(options.source, around, read=options.read) as decoder:
+            yield from (frame.pixels for frame in decoder if frame.index in set(run))
+
+
+def runs_of(options: SolveOptions, rows: Sequence[FrameRow]) -> list[list[int]]:
+    """Numbers of the source's pictures that rows show, in runs that are read one after the other.
+
+    Args:
+        options: Say where a loop is closed: what follows its end are its first pictures.
+        rows: Frames of the track, in order, at least one.
+    """
+    runs: list[list[int]] = [[]]
+    for number in (options.seam.picture_of(row.frame) for row in rows):
+        if runs[-1] and number <= runs[-1][-1]:
+            runs.append([])
+        runs[-1].append(number)
+    return runs

@@ -21,6 +21,7 @@ from pipeline.loop.processes import InProcesses
 from pipeline.loop.ranges import InThisProcess, Part, RangeRunner, Work
 from pipeline.loop.render import render
 from pipeline.loop.result import Animated
+from pipeline.loop.seam import with_seam
 from pipeline.options.job import Job
 from pipeline.options.output import Output
 from pipeline.options.run import Run
@@ -30,7 +31,7 @@ from pipeline.timeline.mesh_course import with_course
 from pipeline.track import TrackReader, join, refuse_track
 from pipeline.track.resume import check_track_place
 from pipeline.track.schema import ENDING
-from stages.media import probe
+from stages.media import FrameRange, probe
 from stages.media.writing.commit import PendingFile
 from warp_kernels.color_model import ColorModel
 from warp_kernels.errors import OptionError
@@ -55,7 +56,8 @@ def animate(job: Job, progress: Progress, runner: RangeRunner | None = None) -> 
     """
     runner = runner or runner_of(job.run)
     job = with_course(job)
-    if runner.places > 1 or job.look.followed:
+    job = replace(job, solve=with_seam(job.solve))
+    if runner.places > 1 or job.look.followed or job.solve.seam.over:
         return _solved_then_drawn(job, progress, runner)
     return with_unreached(job.solve, convert(job, job.fitted, progress))
 
@@ -84,7 +86,7 @@ def solve(
         OutputError: If the track cannot be written.
         TrackError: If the track to go on with cannot be.
     """
-    runner = runner or runner_of(run)
+    runner, options = runner or runner_of(run), with_seam(options)
     work = Work(options, replace(run, jobs=1), fitted or options.model)
     planned = _planned(options, output, runner)
     if planned is not None:
@@ -150,7 +152,9 @@ def _solved_then_drawn(job: Job, progress: Progress, runner: RangeRunner) -> Ani
     """
     begun = perf_counter()
     both = _Halves(progress)
-    options, output = job.solve, job.output
+    options, output, seam = job.solve, job.output, job.solve.seam
+    wanted = FrameRange(seam.opens, seam.closes) if seam.over else options.frame_range
+    job = replace(job, solve=replace(options, frame_range=wanted))
     assert output.path is not None
     refuse_track(options.source)
     info = probe(options.source, read=options.read)
@@ -163,8 +167,7 @@ def _solved_then_drawn(job: Job, progress: Progress, runner: RangeRunner) -> Ani
         kept = replace(output, track=track)
         solved = solve(options, kept, job.run, both, job.fitted, runner)
         with TrackReader(track) as reader:
-            wanted, source = options.frame_range, options.source
-            drawn = render_job(reader, wanted, job.look, output, job.run, source)
+            drawn = render_job(reader, wanted, job.look, output, job.run, options.source)
             both.second_half()
             result = render(drawn.job, reader, drawn.info, both)
     finally:

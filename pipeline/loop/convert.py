@@ -16,6 +16,7 @@ from pipeline.loop.edited import EditedFrames
 from pipeline.loop.motion import check_cuts, open_around
 from pipeline.loop.prepare import prepared
 from pipeline.loop.result import Animated, Tally
+from pipeline.loop.seam import with_return
 from pipeline.loop.solution import followed
 from pipeline.loop.threads import Behind, ahead
 from pipeline.options.job import Job
@@ -24,7 +25,7 @@ from pipeline.progress import Progress
 from pipeline.track import TrackReader, TrackWriter
 from pipeline.track.resume import Past, open_track, past_of
 from stages.masks.weight_maps import WeightMap
-from stages.media import Decoder
+from stages.media import Decoder, MediaInfo
 from stages.media.expected_frames import expected_frames
 from stages.triangulate import Triangulator
 from warp_kernels.color_model import ColorModel
@@ -66,7 +67,7 @@ def convert(job: Job, fitted: ColorModel, progress: Progress) -> Animated:
         # in this order all kernels of the job are compiled together
         drawing = Drawing(job, info, device) if draws else None
         triangulator = triangulator_of(options, size, device, fitted)
-        tally = Tally(progress, expected_frames(options.frame_range, info))
+        tally = Tally(progress, _expected(options, info))
         restarts: list[str] = []
         refused: list[str] = []
         found = _opened(decoder, attention, maps, options, past, restarts)
@@ -87,8 +88,17 @@ def convert(job: Job, fitted: ColorModel, progress: Progress) -> Animated:
     notes = [] if past is None else past.notes
     notes += restarts if track_path is not None else []
     told = [*device.notes, *decoder.notes, *notes, *attention.notes]
+    told += [options.seam.note] if options.seam.over else []
     told += [note for one in maps for note in one.notes]
     return tally.result(begun, warnings, [*told, *made])
+
+
+def _expected(options: SolveOptions, info: MediaInfo) -> int | None:
+    """How many frames are solved, as far as can be told; a loop goes on beyond its end."""
+    wanted = options.frame_range
+    if options.seam.over and wanted.last is not None:
+        return wanted.last - wanted.first + 1
+    return expected_frames(wanted, info)
 
 
 def _opened(
@@ -101,7 +111,8 @@ def _opened(
 ) -> Generator[Prepared, None, None]:
     """Decode and prepare frames ahead of the solution."""
     reached = None if past is None else past.reached
-    found = prepared(decoder, decoder.info, attention, maps, options, reached, notes)
+    frames = with_return(decoder, options)
+    found = prepared(frames, decoder.info, attention, maps, options, reached, notes)
     return ahead(found, DECODED_AHEAD)
 
 

@@ -42,7 +42,11 @@ def open_around(options: SolveOptions, reached: Reached | None) -> Decoder:
         MediaError: If the source cannot be read.
     """
     refuse_track(options.source)
-    wanted = options.frame_range
+    wanted, seam = options.frame_range, options.seam
+    if reached is not None and seam.picture_of(reached.frame) != reached.frame:
+        reached = replace(reached, frame=seam.closes)  # what follows the end is read behind it
+    if seam.is_own and wanted.last is not None:
+        wanted = replace(wanted, last=min(wanted.last, seam.closes))
     before, after = reach_of(options.foci)
     if reached is not None and reached.frame >= wanted.first - before * wanted.step:
         last = None if wanted.last is None else max(wanted.last, reached.frame)
@@ -87,7 +91,7 @@ def with_motion(
         is_new = reached is None or frame.index > reached.frame
         if is_new and holds(options.frame_range, frame, info):
             joined = before is not None and before.index == last
-            if not (joined or seen.opens_shot or options.independent):
+            if not (joined or seen.opens_shot or options.independent or options.seam.over):
                 notes.append(_restart(frame.index))
             if reached is not None and before is not None and before.index == reached.frame == last:
                 yield Prepared(reached.shot, before, MeshFrom.TRACK)

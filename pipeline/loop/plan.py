@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from pipeline.loop.motion import check_cuts, holds, open_around
+from pipeline.loop.seam import with_return
 from pipeline.loop.shots import with_shots
 from pipeline.options.solve_options import SolveOptions
 from stages.media import FrameRange
@@ -63,7 +64,7 @@ def plan(options: SolveOptions, parts: int | None = None) -> Plan:
     last = -1
     with open_around(options, None) as decoder:
         check_cuts(options.cuts, options.source, decoder.info)
-        for seen in with_shots(decoder, options.cuts):
+        for seen in with_shots(with_return(decoder, options), options.cuts):
             if holds(options.frame_range, seen.frame, decoder.info):
                 last = seen.frame.index
                 if seen.opens_shot or not starts:

@@ -101,7 +101,10 @@ RANGE_OPTIONS = tuple(
 )
 """Options that together make a `FrameRange`."""
 
-_SOLVING = {"triangles", "motion", "processes", "track", "resume", "fps", "page", "stream", "seed"}
+_SOLVING = {
+    *("triangles", "motion", "processes", "track", "resume", "fps", "page", "stream", "seed"),
+    "loop",
+}
 """Groups and options that mean nothing once there is a track."""
 
 _HEARD = ("audio_mode", "audio_offset", "beats")
@@ -115,7 +118,7 @@ COMMAND_OPTIONS: dict[str, Callable[[Option], bool]] = {
     "animate": lambda o: True,
     "solve": lambda o: o.group not in ("look", "output") or o.dest in _SOLVED_WITH,
     "render": lambda o: not _SOLVING & {o.group, o.dest},
-    "preview": lambda o: o.dest not in ("track", "resume", "jobs", "edits"),
+    "preview": lambda o: o.dest not in ("track", "resume", "jobs", "edits", "loop"),
     "plan": lambda o: o.group == "range" or o.dest == "cuts",
     "measure": lambda o: o in RANGE_OPTIONS,
     "timeline": lambda o: o.dest in _LOOKED_AT,

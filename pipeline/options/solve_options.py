@@ -8,6 +8,7 @@ from pathlib import Path
 
 from pipeline.options.course import Course
 from pipeline.options.edit_log import EditLog
+from pipeline.options.seam import Seam
 from stages.flows import FLOWS, Flow
 from stages.flows.dis import Dis
 from stages.focus import FOCI, Focus, resolved
@@ -19,6 +20,9 @@ from stages.media.reading.read_options import ReadOptions
 from stages.triangulate_options import TriangulateOptions
 from warp_kernels.color_model import ColorModel
 from warp_kernels.errors import OptionError
+
+MAX_LOOP = 120
+"""Frames. So many pictures wait in memory until they are blended."""
 
 
 @dataclass(frozen=True)
@@ -107,7 +111,21 @@ class SolveOptions:
     )
     """Whether every frame starts from a new layout."""
 
+    loop: int = field(
+        default=0,
+        metadata={
+            "help": "close the film to a loop: frames over which its end is blended into its "
+            "beginning, such as 12; 0 for not",
+            "group": "time",
+        },
+    )
+    """Frames over which the end of a loop is blended into its beginning; 0 for no loop."""
+    seam: Seam = field(default_factory=Seam)
+    """How the loop is closed, once that is known."""
+
     def __post_init__(self) -> None:
+        if not 0 <= self.loop <= MAX_LOOP:
+            raise OptionError(f"--loop {self.loop}: must lie between 0 (no loop) and {MAX_LOOP}")
         if self.seed < 0:
             raise OptionError(f"--seed {self.seed}: must be 0 or more")
         if self.cuts not in ("auto", "none") and not Path(self.cuts).is_file():
