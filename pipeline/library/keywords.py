@@ -107,6 +107,8 @@ class OutputKeywords(TypedDict, total=False):
     audio: bool
     audio_mode: str
     overwrite: bool
+    svg_precision: int
+    svg_merge: bool
 
 
 class RenderKeywords(RangeKeywords, LookKeywords, OutputKeywords, DeviceKeywords, total=False):

@@ -10,7 +10,9 @@ from time import perf_counter
 import numpy as np
 
 from pipeline.envelope import MeshFrom, Prepared, Solved
-from pipeline.look.drawing import Drawing, check_drawing
+from pipeline.look.drawing import Drawing
+from pipeline.look.exporting import Exporting
+from pipeline.look.outputs import check_output_of, open_drawing
 from pipeline.look.source_pictures import source_pictures
 from pipeline.loop.attention import Attention
 from pipeline.loop.motion import check_cuts, open_around
@@ -55,7 +57,7 @@ def convert(job: Job, fitted: ColorModel, progress: Progress) -> Animated:
         info = decoder.info
         check_cuts(options.cuts, options.source, info)
         if draws:
-            check_drawing(job, info)
+            check_output_of(job, info)
         device = Device(job.run.device, job.run.threads, progress.kernels)
         count = options.triangulate.refine.triangles
         step, factor = options.frame_range.step, options.course.focus
@@ -63,7 +65,7 @@ def convert(job: Job, fitted: ColorModel, progress: Progress) -> Animated:
         size = (info.width, info.height)
         maps = [WeightMap(str(m.file), size, options.frame_range, m.strength) for m in options.maps]
         # in this order all kernels of the job are compiled together
-        drawing = Drawing(job, info, device) if draws else None
+        drawing = open_drawing(job, info, device) if draws else None
         triangulator = triangulator_of(options, size, device, fitted)
         tally = Tally(progress, expected_frames(options.frame_range, info))
         restarts: list[str] = []
@@ -166,7 +168,7 @@ def _recall(job: Job, tally: Tally, writer: Behind[Solved] | None) -> None:
 class _Writer:
     """Stores a solved frame, and draws it."""
 
-    def __init__(self, track: TrackWriter | None, drawing: Drawing | None) -> None:
+    def __init__(self, track: TrackWriter | None, drawing: Drawing | Exporting | None) -> None:
         self._track = track
         self._drawing = drawing
 
