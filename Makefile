@@ -22,7 +22,7 @@ demo: $(DEMO_SHEET)
 	@echo "contact sheet: $(DEMO_SHEET)"
 
 test: $(VENV)/.installed-dev
-	@$(BIN)/python -m pytest
+	@$(BIN)/python -m pytest --numprocesses=logical --maxprocesses=4 --dist=worksteal
 
 lint: $(VENV)/.installed-dev
 	@$(BIN)/ruff check .

@@ -87,6 +87,24 @@ PICTURES: dict[str, Picture] = {
     "build-up": Picture([of("out/build-up.mp4", 0, 25, 45, 72)], 480),
     "ink-to-colour": Picture([of("out/ink-to-colour.mp4", 10, 28, 45, 65)], 480, quality=86),
     "strobe-safe": Picture([of("out/strobe-safe.mp4", 7, 43, 53, 70)], 480, quality=86),
+    "palettes": Picture(
+        [
+            stills("out/sunset.png", "out/poster_colors.png"),
+            stills("out/borrowed.png", "out/graded.png"),
+        ],
+        600,
+        quality=86,
+    ),
+    "layouts": Picture(
+        [
+            stills("out/poisson.png", "out/outlines.png", "out/hex.png"),
+            stills("out/phyllotaxis.png", "out/radial.png", "out/web.png"),
+        ],
+        400,
+        quality=86,
+    ),
+    "kept": Picture([stills("out/kept.png", "out/half_kept.png")], 512, quality=84),
+    "lattice": Picture([of("out/lattice.mp4", 0, 9, 20)], 480, quality=84),
     "lenses": Picture([of("out/lenses.mp4", 61)], 1120),
 }
 

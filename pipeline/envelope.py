@@ -80,5 +80,8 @@ class Solved(Envelope):
     """Which followed regions its triangles belong to, see `Paint`, [T, R]; None for R = 0."""
     is_stored: bool = False
     """Whether the track holds it already."""
+    has_more: bool = False
+    """Whether the track shall hold the next frame as well or neither: only together can a run go on
+    from them."""
     is_shown: bool = True
     """Whether it is part of the output, or only there for those around it."""

@@ -9,6 +9,8 @@ from stages.look.fading import Fading
 from stages.look.paint import paint_of
 from stages.masks.gray import read_gray
 from stages.snapshot import Snapshot
+from stages.toning.choices import Choices
+from stages.toning.tone import Tone, toned
 from warp_kernels.device.device import Device
 from warp_kernels.drawing.canvas import Canvas
 from warp_kernels.errors import OptionError
@@ -73,6 +75,8 @@ class Renderer:
         shares: np.ndarray | None = None,
         lay: Lay | None = None,
         columns: Sequence[int] | None = None,
+        tone: Tone | None = None,
+        choices: Choices | None = None,
     ) -> np.ndarray:
         """Draw a snapshot.
 
@@ -88,6 +92,8 @@ class Renderer:
             lay: How strokes lie; None if they follow the triangles' own base edges; with `fading`
                 that which it was told.
             columns: Which of the followed regions it draws; None for all.
+            tone: What is done to the colours of triangles; None for nothing.
+            choices: Which colours of its palette they have taken; None for the nearest.
 
         Returns:
             Code values, [rows, columns, 3] uint8, or [rows, columns, 4] with straight alpha if no
@@ -97,6 +103,8 @@ class Renderer:
         paint, layers = paint_of(snapshot, shares, lay), None
         if fading is not None:
             paint, layers = fading.layers()
+        if tone is not None:
+            paint = toned(paint, tone, choices)
         if columns is not None and paint.shares is not None:
             paint = replace(paint, shares=np.ascontiguousarray(paint.shares[:, list(columns)]))
         return self._canvas.draw(

@@ -7,6 +7,7 @@ from math import comb
 import numpy as np
 
 from stages.frame import Frame
+from stages.hand.locks import NO_LOCKS, Locks
 from stages.mesh import Mesh, centres_of
 from warp_kernels.color_model import CHANNELS, ColorModel
 
@@ -38,6 +39,8 @@ class Snapshot:
     limits: np.ndarray | None = None
     """The lowest and the highest value of every channel that a triangle shows, whatever its
     polynomial says [code values], shape [T, 2, 3]; None for 0 and 255."""
+    locks: Locks = NO_LOCKS
+    """What of the mesh a person holds fast."""
 
     @property
     def bounds(self) -> np.ndarray:

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from stages.frame import Frame
+from stages.hand.locks import NO_LOCKS, Locks
 from stages.layouts import Layout
 from stages.mesh import Mesh
 from stages.motion.advect import Carried
@@ -17,6 +18,7 @@ from stages.solve.bench import Bench
 from stages.solve.color_limits import Limiter
 from stages.solve.color_owners import color_owners
 from stages.solve.convergence import Convergence
+from stages.solve.hold import Hold
 from stages.solve.quality import FALL, Trial, smallest_that_reaches
 from stages.solve.steady_colors import steadied
 from stages.spaces import SPACES
@@ -79,11 +81,13 @@ class Triangulator:
         self._space = SPACES[options.space]()
         self._options = _against(options, self._space.scale)
         self._device, self._size = device, size
+        self._hold = Hold(options.keep_layout)
         self._least = options.refine.least_count(*size)
         fitted = max(options.model, drawn or options.model, key=lambda model: model.degree)
         device.expect(limiting_kernels(device, options.model, fitted))
         self._even = self._bench(weighted=False)
         self._weighted: Bench | None = None
+        self._locks = NO_LOCKS
         self._use(self._even)
         self._solved: Snapshot | None = None  # with energies by the colours that are optimised
         shared = fitted is options.model and options.space == "rgb"
@@ -98,10 +102,11 @@ class Triangulator:
         appraiser = Appraiser(workspace, SLIVER_HEIGHT)
         approximator = Approximator(
             workspace=workspace,
-            topology=TOPOLOGIES[options.topology](),
+            topology=self._hold.calmed(TOPOLOGIES[options.topology]()),
             appraiser=appraiser,
             options=options.optimize,
             iterations=options.iterations,
+            hold=self._hold,
         )
         return Bench(workspace, appraiser, approximator)
 
@@ -109,6 +114,14 @@ class Triangulator:
         """Work on this bench from now on."""
         self._workspace, self._appraiser = bench.workspace, bench.appraiser
         self._approximator = bench.approximator
+
+    def _lock(self, locks: Locks) -> None:
+        """Hold fast from now on what a person holds, and nothing else."""
+        if self._locks is not locks:
+            self._locks = locks
+            for bench in (self._even, self._weighted):
+                if bench is not None:
+                    bench.appraiser.hold(locks)
 
     def refine_by(self, refine: RefineOptions) -> None:
         """Have other numbers of triangles, or bounds of the error, from the next frame on.
@@ -126,6 +139,7 @@ class Triangulator:
             layout: Makes the first mesh.
             rng: Randomness of the layout.
         """
+        self._lock(NO_LOCKS)
         self._load(frame)
         refine = self._options.refine
 
@@ -154,6 +168,7 @@ class Triangulator:
         if frame.weights is not None:
             if self._weighted is None:
                 self._weighted = self._bench(weighted=True)
+                self._weighted.appraiser.hold(self._locks)
             bench = self._weighted
             bench.load(pixels, frame.weights)
         self._use(bench)
@@ -169,13 +184,14 @@ class Triangulator:
             earlier: What was given for the previous frame, here or to `recall`: by it is told where
                 the picture boils, and colours keep to its; None for neither.
         """
+        self._lock(seed.locks)
         self._load(frame)
-        iterations = self._options.frame_iterations
+        iterations = 0 if self._hold.is_full else self._options.frame_iterations
         rounds = max(1, iterations // FRAME_ROUND - 1)
         each = iterations // (rounds + 1)
         convergence = Convergence(FRAME_SAVING, patience=1)
         spring = SPRING * self._rmse(seed.mesh) ** 2
-        unrest = self._unrest(seed, earlier)
+        unrest = None if self._hold.share else self._unrest(seed, earlier)
         if unrest is not None:
             seed = unrest.freed(seed)
         mesh = self._follow(seed.mesh, seed, spring, each, frame.weights)
@@ -183,7 +199,10 @@ class Triangulator:
             renewing = int(RENEWED * rounds)
             mesh = self._renew(mesh, seed, unrest, frame.weights, spring, renewing, each)
             rounds -= renewing
-        goal = self._goal(self._followed_count(mesh), calm=True, unrest=unrest)
+        count = self._followed_count(mesh)
+        if self._hold.is_full and earlier is not None:
+            count = earlier.mesh.triangle_count  # a layout has about as many as were asked for
+        goal = self._goal(count, calm=True, unrest=unrest)
         for _ in range(rounds):
             if each and convergence.is_reached(self._workspace.last_energy()):
                 break
@@ -213,7 +232,9 @@ class Triangulator:
             each: Iterations after each of them.
         """
         refine = self._options.refine
-        count = refine.triangles if refine.quality is None else mesh.triangle_count
+        count = mesh.triangle_count
+        if refine.quality is None:
+            count = refine.triangles + self._locks.extra(mesh)
         boiling = int(unrest.boiling(mesh).sum())
         renewal = self._approximator.topology.renewal
         for number in range(1, rounds + 1):
@@ -254,10 +275,13 @@ class Triangulator:
         return None
 
     def _followed_count(self, mesh: Mesh) -> int:
-        """How many triangles a later frame shall have; a quality lets their number drift."""
+        """How many triangles a later frame shall have; a quality lets their number drift.
+
+        What is held fast comes on top.
+        """
         refine = self._options.refine
         if refine.quality is None:
-            return refine.triangles
+            return refine.triangles + self._locks.extra(mesh)
         missed = self._rmse(mesh) / refine.quality
         if abs(missed - 1) < CALM_QUALITY:
             return mesh.triangle_count
@@ -281,7 +305,8 @@ class Triangulator:
             iterations: Number of steps.
             weights: The picture's, [H, W] uint8, or None.
         """
-        load_mesh(self._workspace, mesh, springs_of(mesh, seed, spring, weights))
+        hold = self._hold.strength(spring / SPRING)
+        load_mesh(self._workspace, mesh, springs_of(mesh, seed, spring, weights, hold))
         return optimize(
             self._workspace,
             mesh,
@@ -294,6 +319,8 @@ class Triangulator:
     def _trial(self, frame: Frame, layout: Layout, rng: np.random.Generator, goal: Goal) -> Trial:
         """Approximate the picture in the workspace from scratch."""
         count = self._approximator.growth(goal).count(0.0, goal.count)
+        if self._approximator.keeps_layout:
+            count = goal.count
         mesh = layout.build(frame.pixels, max(2, count), rng)
         mesh = self._approximator.approximate(mesh, goal)
         if self._options.refine.quality is None or self._fitting is not self._even.workspace:
@@ -335,6 +362,7 @@ class Triangulator:
             energies=energies,
             counts=counts,
             limits=None if limits is None else limits[owners],
+            locks=self._locks.within(mesh),
         )
 
 

@@ -47,6 +47,13 @@ class TriangulateOptions:
             "choices": tuple(SPACES),
         },
     )
+    keep_layout: float = field(
+        default=0.0,
+        metadata={
+            "help": "hold vertices near where the layout, and then the motion, put them: 0 for "
+            "free, 1 for the layout as it is"
+        },
+    )
     optimize: OptimizeOptions = field(default_factory=OptimizeOptions)
     refine: RefineOptions = field(default_factory=RefineOptions)
 
@@ -55,6 +62,10 @@ class TriangulateOptions:
             if getattr(self, name) < 0:
                 flag = name.replace("_", "-")
                 raise OptionError(f"--{flag} {getattr(self, name)}: must be 0 or more")
+        if not 0.0 <= self.keep_layout <= 1.0:
+            raise OptionError(
+                f"--keep-layout {self.keep_layout:g}: must lie between 0 (free) and 1 (as laid)"
+            )
         for name, known in (
             ("color", COLOR_MODELS),
             ("topology", TOPOLOGIES),

@@ -14,6 +14,10 @@ import pytest
 import warp as wp
 
 from tests.golden_images import compare_with_golden
+from warp_kernels.device.barrier import meet
+from warp_kernels.device.kernel_cache import settle_cache
+from warp_kernels.device.kernels import compile_early
+from warp_kernels.device.runtime import WARP, find_device, quiet
 
 GOLDEN_FOLDER = Path(__file__).parent / "golden"
 SEED = 20180806
@@ -37,6 +41,14 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         action="store_true",
         help="store what is rendered as the new golden pictures; look at them before a commit",
     )
+
+
+@pytest.fixture(scope="session", autouse=True)
+def no_first_run() -> None:
+    """Compile one kernel, so that what a first run says stands before no test's one line."""
+    with WARP, quiet():
+        settle_cache()
+        compile_early(find_device("cpu"), [meet])
 
 
 @pytest.fixture(params=["cpu", "cuda:0"], ids=["cpu", "cuda"])

@@ -30,7 +30,7 @@ RUNTIME_DEPENDENCIES = {
     "av",
     "tqdm",
 }
-REGISTRIES = ("COLOR_MODELS", "LAYOUTS", "FLOWS", "FOCI", "SPACES", "STYLES", "TOPOLOGIES")
+REGISTRIES = ("COLOR_MODELS", "EDITS", "LAYOUTS", "FLOWS", "FOCI", "SPACES", "STYLES", "TOPOLOGIES")
 TEXT_SUFFIXES = {".py", ".md", ".toml", ".txt", ".yml", ".yaml", ".cfg", ".ini", ".json", ".sh", ""}
 
 

@@ -119,7 +119,7 @@ def test_help_names_members_without_importing_them(packages: Path) -> None:
     text = run(packages, "animate --help").stdout
     assert "\n  --style neon (installed)\n" in text
     assert "\n  --style failing (installed)\n" in text
-    assert "grid|importance|cells" in text
+    assert "phyllotaxis|points|cells" in text
 
 
 def test_members_are_used_and_stored_by_name(packages: Path, tmp_path: Path) -> None:

@@ -47,7 +47,10 @@ class InTurn(InThisProcess):
 def rows_of(track: Path) -> dict[str, list[tuple]]:
     """All rows of all frames, blobs included; by a path of its own, without the reader."""
     with closing(sqlite3.connect(track)) as connection:
+        names = connection.execute("SELECT name FROM sqlite_master WHERE type = 'table'")
+        known = {name for (name,) in names}
         return {
             table: connection.execute(f"SELECT * FROM {table} ORDER BY frame").fetchall()
             for table in TABLES
+            if table in known
         }

@@ -2,6 +2,7 @@
 
     TrimotionError            exit 1
     +-- OptionError           exit 2   an option or argument that cannot be met
+    |   +-- EditError         exit 2   an edit by hand that cannot be made
     +-- MediaError            exit 3   an input that cannot be read
     |   +-- OutputError       exit 4   an output that cannot be written
     +-- TrackError            exit 3   a mesh track that cannot be used
@@ -22,6 +23,10 @@ class OptionError(TrimotionError):
     """An option whose value cannot be met."""
 
     exit_code = 2
+
+
+class EditError(OptionError):
+    """An edit by hand that cannot be made; nothing has changed."""
 
 
 class MediaError(TrimotionError):

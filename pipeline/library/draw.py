@@ -53,5 +53,6 @@ def drawn(
             options = TriangulateOptions(color=model.name)
             snapshot = Triangulator(device, size, options, fitted).fit(frame, snapshot.mesh)
         renderer = Renderer(device, size, framing.picture, styles)
-        pixels = renderer.render(snapshot, source=None if frame is None else frame.pixels)
+        source = None if frame is None else frame.pixels
+        pixels = renderer.render(snapshot, source=source, tone=look.tone)
     return framed(pixels, framing, look.backdrop(model))

@@ -38,9 +38,19 @@ def given_values(function: str, keywords: Mapping[str, Any]) -> dict[str, object
             raise OptionError(_unknown(function, name))
         elif value is not None:
             option = options[name]
+            if option.dest == "edits" and not isinstance(value, str | os.PathLike):
+                values[option.dest] = _log(value)
+                continue
             plain = _plain(value, is_size=option.dest == "output_size")
             values[option.dest] = _read(option, name, plain)
     return with_preset(values, preset)
+
+
+def _log(value: Any) -> object:
+    """A log of edits that is no file: edits, or what a line of a file says."""
+    from pipeline.edit_log.json_lines import log_of
+
+    return log_of(value)
 
 
 def _read(option: Option, name: str, value: object) -> object:

@@ -45,6 +45,7 @@ class ShapeKeywords(DeviceKeywords, total=False):
     focus: str | Sequence[str]
     color: str
     iterations: int
+    keep_layout: float
     topology: str
     sums: str
     space: str
@@ -57,9 +58,10 @@ class ShapeKeywords(DeviceKeywords, total=False):
 
 
 class PictureKeywords(ShapeKeywords, total=False):
-    """How one picture becomes triangles; weights may be an array."""
+    """How one picture becomes triangles; weights may be an array, edits a list."""
 
     weights: Any
+    edits: Any
 
 
 class AnimatorKeywords(ShapeKeywords, total=False):
@@ -78,6 +80,7 @@ class SolveKeywords(AnimatorKeywords, SourceKeywords, total=False):
 
     preset: Name | None
     timeline: Name | None
+    edits: Any
     jobs: int
     overwrite: bool
     resume: bool
@@ -89,6 +92,8 @@ class LookKeywords(TypedDict, total=False):
     styles: str | Sequence[str]
     regions: str | Sequence[str]
     timeline: Name | None
+    palette: Name | None
+    grade: str | None
     size: str | tuple[int, int] | None
     scale: float | None
     fit: str
@@ -127,6 +132,8 @@ class DrawKeywords(DeviceKeywords, total=False):
     """How one frame is drawn."""
 
     styles: str | Sequence[str]
+    palette: Name | None
+    grade: str | None
     size: str | tuple[int, int] | None
     scale: float | None
     fit: str
@@ -160,13 +167,19 @@ def _for_pictures(option: Option) -> bool:
     return described or option.dest in ("seed", "device", "threads")
 
 
-DRAWN = ("styles", "output_size", "scale", "fit", "background", "device", "threads")
+DRAWN = (
+    *("styles", "palette", "grade", "output_size", "scale", "fit", "background"),
+    *("device", "threads"),
+)
 """Options that say how one frame is drawn."""
 
 TAKEN: dict[str, Callable[[Option], bool]] = {
     **{name: COMMAND_OPTIONS[name] for name in ("animate", "solve", "render", "measure")},
-    "triangulate": _for_pictures,
-    "Animator": lambda option: _for_pictures(option) or option.group in ("triangles", "motion"),
+    "triangulate": lambda option: _for_pictures(option) or option.dest == "edits",
+    "Animator": lambda option: (
+        option.dest != "edits"
+        and (_for_pictures(option) or option.group in ("triangles", "motion"))
+    ),
     "draw": lambda option: option.dest in DRAWN,
 }
 """Which options a function takes."""

@@ -110,6 +110,8 @@ class Triangulation:
         size: str | tuple[int, int] | None = None,
         fit: str = "contain",
         background: str | None = None,
+        palette: str | None = None,
+        grade: str | None = None,
         device: str | None = None,
         threads: int | None = None,
     ) -> np.ndarray:
@@ -122,6 +124,8 @@ class Triangulation:
             size: Width and height instead [px], or a text as on the command line: `1080x`.
             fit: How the picture gets into another shape: `contain`, `cover` or `stretch`.
             background: Colour of bars, and of what transparent styles leave open.
+            palette: Colours that those of the triangles become: `#123,#fa0,white`, a file.
+            grade: Change of their colours: `exposure=0.5,saturation=0.8`.
             device: Where kernels run; if left out, where they ran before.
             threads: Threads of the CPU; if left out, as many as before.
 
@@ -134,7 +138,7 @@ class Triangulation:
         """
         origin = self._origin
         options: dict[str, Any] = {"styles": styles, "scale": scale, "size": size}
-        options |= {"fit": fit, "background": background}
+        options |= {"fit": fit, "background": background, "palette": palette, "grade": grade}
         options["device"] = origin.device if device is None else device
         options["threads"] = origin.threads if threads is None else threads
         model = COLOR_MODELS[origin.color]

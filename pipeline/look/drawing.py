@@ -7,13 +7,15 @@ from types import TracebackType
 from pipeline.envelope import Solved
 from pipeline.look.region_masks import own_mask
 from pipeline.look.smooth import Smoother
-from pipeline.look.stage import Posed, check_stage, open_stage
+from pipeline.look.stage import Looks, Posed, check_stage, open_stage
 from pipeline.options.job import Job
 from stages.look.fading import Fading
 from stages.look.framing import Framing
+from stages.look.paint import paint_of
 from stages.look.strokes import Strokes
 from stages.masks.regions import Mask, open_masks
 from stages.media import MediaInfo, check_output, open_encoder
+from stages.toning.choices import Choices
 from warp_kernels.device.device import Device
 from warp_kernels.scene.stroke_lay import Lay
 
@@ -54,6 +56,8 @@ class Drawing:
         self._lays_strokes = look.lays_strokes and not options.independent
         self._fading: Fading | None = None
         self._strokes: Strokes | None = None
+        self._holds_colors = look.holds_colors and not options.independent
+        self._choices: dict[int, Choices] = {}
         self._shot: int | None = None
 
     @property
@@ -71,12 +75,40 @@ class Drawing:
         self._follow(solved)
         if solved.is_shown:
             snapshot = solved.snapshot
-            index, shown = snapshot.frame_index, snapshot.pts * snapshot.time_base
-            looks = self._stage.looks_at(index, shown - self._start_time, solved.shot)
+            index = snapshot.frame_index
+            looks = self._looks_at(solved)
             masks = {name: self._masks[name].at(index) for name in looks.masks}
-            view = Posed(snapshot, self._fading, solved.source, masks, solved.shares, self._lay)
+            view = Posed(
+                snapshot,
+                self._fading,
+                solved.source,
+                masks,
+                solved.shares,
+                self._lay,
+                self._choices,
+            )
             pixels = self._stage.draw(looks, view)
             self._encoder.write(pixels, snapshot.pts, snapshot.time_base, snapshot.frame_index)
+
+    def _looks_at(self, solved: Solved) -> Looks:
+        """What is drawn at a frame."""
+        snapshot = solved.snapshot
+        shown = snapshot.pts * snapshot.time_base - self._start_time
+        return self._stage.looks_at(snapshot.frame_index, shown, solved.shot)
+
+    def _hold_colors(self, solved: Solved, *, begins: bool) -> None:
+        """Let triangles keep the colours of palettes that they took in the frame before."""
+        before = {} if begins else self._choices
+        self._choices = {}
+        paint = paint_of(solved.snapshot)
+        for scene in self._looks_at(solved).scenes:
+            tone = scene.look.tone
+            if tone.palette is not None and tone.palette.is_nearest:
+                known = before.get(scene.section, Choices.none())
+                lab = tone.graded(paint.colors)
+                self._choices[scene.section] = known.followed_by(
+                    paint.ids, lab, tone.palette, self._blend
+                )
 
     def _follow(self, solved: Solved) -> None:
         """Take on what lies on a frame from the one before, and what lingers of it."""
@@ -86,6 +118,8 @@ class Drawing:
             known = None if begins else self._strokes
             mesh = snapshot.mesh
             self._strokes = Strokes.begin(mesh) if known is None else known.followed_by(mesh)
+        if self._holds_colors:
+            self._hold_colors(solved, begins=begins)
         if self._blend:
             fading = None if begins else self._fading
             if fading is None:

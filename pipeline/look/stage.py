@@ -144,7 +144,7 @@ class Stage:
     def _drawn(self, scene: Setting, view: Posed) -> np.ndarray:
         """One scene on its canvas."""
         backdrop = scene.look.backdrop(self._model)
-        pixels = self._wardrobe.draw(scene.look, view)
+        pixels = self._wardrobe.draw(scene.look, view, scene.section)
         if self._is_alpha:
             pixels = with_alpha(pixels)
         elif pixels.shape[2] == 4 and backdrop is None:

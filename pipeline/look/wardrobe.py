@@ -11,6 +11,7 @@ from stages.look.fading import Fading
 from stages.look.veil import Curtain
 from stages.render import Renderer
 from stages.snapshot import Snapshot
+from stages.toning.choices import Choices
 from warp_kernels.color_model import ColorModel
 from warp_kernels.device.device import Device
 from warp_kernels.drawing.canvas import coats_of
@@ -35,6 +36,8 @@ class Posed:
     """Which followed regions its triangles belong to, for all regions of the film [T, R]."""
     lay: Lay | None
     """How strokes lie."""
+    choices: Mapping[int, Choices]
+    """Which colours of their palettes triangles have taken, by the number of the section."""
 
 
 class Wardrobe:
@@ -104,12 +107,13 @@ class Wardrobe:
         followed = tuple(i for i, region in enumerate(look.regions) if region.frames)
         return channels_of(coats_of(look.shown_styles(self._model), masked, followed)) == 4
 
-    def draw(self, look: Look, view: Posed) -> np.ndarray:
+    def draw(self, look: Look, view: Posed, section: int = 0) -> np.ndarray:
         """Draw a frame.
 
         Args:
             look: How.
             view: The frame.
+            section: Number of the section whose look it is.
 
         Returns:
             As `Renderer.render`.
@@ -126,4 +130,6 @@ class Wardrobe:
             view.shares,
             view.lay,
             None if everything else columns,
+            look.tone,
+            view.choices.get(section),
         )

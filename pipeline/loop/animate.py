@@ -14,6 +14,7 @@ from pipeline.look.outputs import check_output_of
 from pipeline.look.region_masks import check_followed
 from pipeline.look.render_job import render_job
 from pipeline.loop.convert import convert
+from pipeline.loop.edit_frames import with_unreached
 from pipeline.loop.parts_folder import make_folder, parts_of, remove_folder
 from pipeline.loop.plan import Plan, plan
 from pipeline.loop.processes import InProcesses
@@ -56,7 +57,7 @@ def animate(job: Job, progress: Progress, runner: RangeRunner | None = None) -> 
     job = with_course(job)
     if runner.places > 1 or job.look.followed:
         return _solved_then_drawn(job, progress, runner)
-    return convert(job, job.fitted, progress)
+    return with_unreached(job.solve, convert(job, job.fitted, progress))
 
 
 def solve(
@@ -87,9 +88,10 @@ def solve(
     work = Work(options, replace(run, jobs=1), fitted or options.model)
     planned = _planned(options, output, runner)
     if planned is not None:
-        return _joined(work, planned, output, runner, progress)
-    (result,) = runner.run(work, [Part(options.frame_range, output)], progress)
-    return result
+        result = _joined(work, planned, output, runner, progress)
+    else:
+        (result,) = runner.run(work, [Part(options.frame_range, output)], progress)
+    return with_unreached(options, result)
 
 
 def runner_of(run: Run) -> RangeRunner:

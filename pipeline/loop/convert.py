@@ -7,17 +7,18 @@ from collections.abc import Generator, Iterable, Iterator, Sequence
 from contextlib import closing, nullcontext
 from time import perf_counter
 
-import numpy as np
-
 from pipeline.envelope import MeshFrom, Prepared, Solved
 from pipeline.look.drawing import Drawing
 from pipeline.look.exporting import Exporting
 from pipeline.look.outputs import check_output_of, open_drawing
 from pipeline.look.source_pictures import source_pictures
 from pipeline.loop.attention import Attention
+from pipeline.loop.edit_frames import check_edits
+from pipeline.loop.edited import EditedFrames
 from pipeline.loop.motion import check_cuts, open_around
 from pipeline.loop.prepare import prepared
 from pipeline.loop.result import Animated, Tally
+from pipeline.loop.solution import followed
 from pipeline.loop.threads import Behind, ahead
 from pipeline.options.job import Job
 from pipeline.options.solve_options import SolveOptions
@@ -27,7 +28,6 @@ from pipeline.track.resume import Past, open_track, past_of
 from stages.masks.weight_maps import WeightMap
 from stages.media import Decoder
 from stages.media.expected_frames import expected_frames
-from stages.motion.advect import advect
 from stages.triangulate import Triangulator
 from warp_kernels.color_model import ColorModel
 from warp_kernels.device.device import Device
@@ -56,6 +56,7 @@ def convert(job: Job, fitted: ColorModel, progress: Progress) -> Animated:
     with open_around(options, None if past is None else past.reached) as decoder:
         info = decoder.info
         check_cuts(options.cuts, options.source, info)
+        check_edits(options, info)
         if draws:
             check_output_of(job, info)
         device = Device(job.run.device, job.run.threads, progress.kernels)
@@ -69,6 +70,7 @@ def convert(job: Job, fitted: ColorModel, progress: Progress) -> Animated:
         triangulator = triangulator_of(options, size, device, fitted)
         tally = Tally(progress, expected_frames(options.frame_range, info))
         restarts: list[str] = []
+        refused: list[str] = []
         found = _opened(decoder, attention, maps, options, past, restarts)
         with device, open_track(options, track_path, info, fitted, past) as track:
             writer = Behind(_Writer(track, drawing), SOLVED_BEHIND)
@@ -76,13 +78,14 @@ def convert(job: Job, fitted: ColorModel, progress: Progress) -> Animated:
                 if past is not None:
                     _recall(job, tally, writer if draws else None)
                 keeps = job.look.needs_source
-                for solved in solved_frames(found, triangulator, options, past, keeps=keeps):
+                frames = solved_frames(found, triangulator, options, past, refused, keeps=keeps)
+                for solved in frames:
                     writer.put(solved)
                     tally.add(solved.snapshot.mesh.triangle_count, solved.snapshot.rmse)
             if track is not None:
                 track.finish()
     made = [] if drawing is None else drawing.notes
-    warnings = [*decoder.warnings, *(text for one in maps for text in one.warnings)]
+    warnings = [*decoder.warnings, *refused, *(text for one in maps for text in one.warnings)]
     notes = [] if past is None else past.notes
     notes += restarts if track_path is not None else []
     told = [*device.notes, *decoder.notes, *notes, *attention.notes]
@@ -123,6 +126,7 @@ def solved_frames(
     triangulator: Triangulator,
     options: SolveOptions,
     past: Past | None,
+    refused: list[str] | None = None,
     *,
     keeps: bool = False,
 ) -> Iterator[Solved]:
@@ -133,23 +137,20 @@ def solved_frames(
         triangulator: Made by `triangulator_of` for the options.
         options: Say how frames begin.
         past: What an earlier run left, or None.
+        refused: Receives a sentence for each edit by hand that cannot be made.
         keeps: Whether what draws them needs their pictures.
     """
     snapshot = None if past is None else past.snapshot
+    if options.edits is not None and options.edits.edits:
+        edited = EditedFrames(triangulator, options, snapshot, keeps=keeps)
+        yield from edited.solved(found)
+        if refused is not None:
+            refused += edited.refused
+        return
     for ready in found:
-        frame, mesh_from = ready.frame, ready.mesh_from
-        triangulator.refine_by(options.course.refine(frame.index, options.triangulate.refine))
-        if snapshot is None or mesh_from is MeshFrom.LAYOUT:
-            rng = np.random.default_rng([options.seed, frame.index])
-            snapshot = triangulator.first(frame, options.layout, rng)
-        elif mesh_from is MeshFrom.TRACK:
-            triangulator.recall(frame, snapshot)
-            continue
-        elif mesh_from is MeshFrom.SAME_PICTURE:
-            snapshot = snapshot.again(frame)
-        else:
-            snapshot = triangulator.next(frame, advect(snapshot.mesh, mesh_from), snapshot)
-        yield ready.solved(snapshot, keeps_picture=keeps)
+        snapshot = followed(triangulator, options, ready, snapshot)
+        if ready.mesh_from is not MeshFrom.TRACK:
+            yield ready.solved(snapshot, keeps_picture=keeps)
 
 
 def _recall(job: Job, tally: Tally, writer: Behind[Solved] | None) -> None:
@@ -174,6 +175,6 @@ class _Writer:
 
     def __call__(self, solved: Solved) -> None:
         if self._track is not None and not solved.is_stored:
-            self._track.write(solved.snapshot, solved.shot)
+            self._track.write(solved.snapshot, solved.shot, more=solved.has_more)
         if self._drawing is not None:
             self._drawing.draw(solved)

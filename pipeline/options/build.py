@@ -12,7 +12,9 @@ from pipeline.options.members import parse_member, parse_region
 from pipeline.options.output import Output
 from pipeline.options.output_name import output_in
 from pipeline.options.run import Run
+from pipeline.options.tones import parse_grade, parse_palette
 from stages.media.frame_range import FrameRange
+from warp_kernels.registry import imported
 from warp_kernels.styles import STYLES
 
 Part = TypeVar("Part")
@@ -50,6 +52,9 @@ def values_of(given: Mapping[str, Any]) -> dict[str, Any]:
             named = values.pop(name, None)
             if named is not None:
                 values[field] = output_in(named, source, ending)
+    if isinstance(values.get("edits"), str):
+        read_log = imported("pipeline.edit_log.json_lines:read_log")
+        values["edits"] = read_log(Path(values["edits"]))
     if given.get("resume"):
         values["overwrite"] = True  # what is drawn from a track replaces what was drawn before
     for option in job_options():
@@ -59,6 +64,9 @@ def values_of(given: Mapping[str, Any]) -> dict[str, Any]:
             values[option.dest] = tuple(found) if option.is_repeatable else found[0]
     regions = given.get("regions", ())
     values["regions"] = tuple(parse_region("--region", text, STYLES) for text in regions)
+    for name, read in (("grade", parse_grade), ("palette", parse_palette)):
+        if given.get(name) is not None:
+            values[name] = read(given[name])
     return values
 
 

@@ -104,14 +104,17 @@ RANGE_OPTIONS = tuple(
 _SOLVING = {"triangles", "motion", "processes", "track", "resume", "fps", "page", "stream", "seed"}
 """Groups and options that mean nothing once there is a track."""
 
+_LOOKED_AT = ("styles", "regions", "palette", "grade", "background", "fps")
+"""Options that say what a timeline may change, and when."""
+
 COMMAND_OPTIONS: dict[str, Callable[[Option], bool]] = {
     "animate": lambda o: True,
     "solve": lambda o: o.group not in ("look", "output") or o.dest in ("overwrite", "resume"),
     "render": lambda o: not _SOLVING & {o.group, o.dest},
-    "preview": lambda o: o.dest not in ("track", "resume", "jobs"),
+    "preview": lambda o: o.dest not in ("track", "resume", "jobs", "edits"),
     "plan": lambda o: o.group == "range" or o.dest == "cuts",
     "measure": lambda o: o in RANGE_OPTIONS,
-    "timeline": lambda o: o.dest in ("styles", "regions", "background", "fps"),
+    "timeline": lambda o: o.dest in _LOOKED_AT,
 }
 """Which options a command has."""
 

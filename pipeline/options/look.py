@@ -1,16 +1,22 @@
 """What decides a picture, once there is a mesh: styles, regions, size, smoothness over time."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from stages.look.framing import Framing, framing_of
 from stages.masks.region import Region
+from stages.toning.grade import Grade
+from stages.toning.palette import Palette
 from warp_kernels.color_model import CONSTANT, LINEAR, ColorModel
 from warp_kernels.errors import OptionError
 from warp_kernels.limits import MAX_SIDE
 from warp_kernels.styles import STYLES, Style
 from warp_kernels.styles.color import parse_color
+
+if TYPE_CHECKING:
+    from stages.toning.tone import Tone
 
 MAX_BLEND = 250
 """Frames; ten seconds. What fades must be kept in memory."""
@@ -48,6 +54,25 @@ class Look:
         },
     )
     """Styles inside of masks, over `styles`, bottom to top."""
+    palette: Palette | None = field(
+        default=None,
+        metadata={
+            "help": "colours that those of the triangles become: #123,#fa0,white from dark to "
+            "bright, a file (.txt, .json, .gpl, .ase, .aco), a picture, or sepia, blueprint, "
+            "sunset, forest, ice, riso, noir; then :mode=nearest, amount=, hold=, count=",
+            "metavar": "FILE|COLORS",
+        },
+    )
+    """The colours that those of triangles become, or None."""
+    grade: Grade | None = field(
+        default=None,
+        metadata={
+            "help": "change the colours of the triangles: exposure, contrast, saturation, hue, "
+            "such as exposure=0.5,saturation=0.8",
+            "metavar": "KEY=VALUE",
+        },
+    )
+    """How colours of triangles are changed, before the palette; None for not."""
     output_size: tuple[int, int] | None = field(
         default=None,
         metadata={
@@ -154,6 +179,27 @@ class Look:
     def lays_strokes(self) -> bool:
         """Whether a look has strokes that go on from frame to frame: all of a shot is needed."""
         return any(style.lays_strokes for style in self._everywhere)
+
+    @property
+    def toned(self) -> Mapping[str, Any]:
+        """What changes the colours of triangles, by the names that curves have for it."""
+        return {"grade": self.grade or Grade(), "palette": self.palette}
+
+    @property
+    def tone(self) -> "Tone":
+        """What is done to the colours of triangles."""
+        from stages.toning.tone import Tone
+
+        return Tone(self.grade or Grade(), self.palette)
+
+    @property
+    def holds_colors(self) -> bool:
+        """Whether triangles keep a palette's colours from frame to frame: all of a shot is needed.
+
+        A curve may make any palette one of that kind.
+        """
+        palettes = [one.palette for one in (self, *self.sections) if one.palette is not None]
+        return any(palette.is_nearest or self.score is not None for palette in palettes)
 
     @property
     def needs_source(self) -> bool:

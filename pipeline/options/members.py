@@ -31,6 +31,27 @@ def parse_member(flag: str, text: str, registry: Mapping[str, type]) -> Any:
         raise OptionError(f"{flag} {text}: {problem}") from error
 
 
+def parse_parameters(
+    flag: str, text: str, name: str, rest: str, kinds: Mapping[str, str]
+) -> dict[str, Any]:
+    """Read `KEY=VALUE,...` of what is no member of a registry; messages name the option.
+
+    Args:
+        flag: The option.
+        text: All that was given to it.
+        name: What has the parameters.
+        rest: The part of the text that holds them; empty for none.
+        kinds: Their types, see `kind_of`.
+
+    Raises:
+        OptionError: If a parameter or a value is not allowed.
+    """
+    try:
+        return _values(name, rest, kinds)
+    except (OptionError, ArgumentTypeError) as error:
+        raise OptionError(f"{flag} {text}: {error}") from error
+
+
 def _values(name: str, rest: str, kinds: Mapping[str, str]) -> dict[str, Any]:
     """Values of what follows a name; the first may be a text or a file without its key."""
     first = next(iter(kinds), "")

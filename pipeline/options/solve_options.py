@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from pipeline.options.course import Course
+from pipeline.options.edit_log import EditLog
 from stages.flows import FLOWS, Flow
 from stages.flows.dis import Dis
 from stages.focus import FOCI, Focus, resolved
@@ -39,7 +40,8 @@ class SolveOptions:
     layout: Layout = field(
         default_factory=Importance,
         metadata={
-            "help": "first mesh of a shot; importance takes a grey picture: importance:MAP.png",
+            "help": "first mesh of a shot; importance takes a grey picture: importance:MAP.png, "
+            "points x and y a line: points:FILE.csv",
             "registry": LAYOUTS,
         },
     )
@@ -77,6 +79,15 @@ class SolveOptions:
     """How one picture becomes triangles."""
     course: Course = field(default_factory=Course)
     """What of this changes in the course of the film."""
+    edits: EditLog | None = field(
+        default=None,
+        metadata={
+            "help": "edits by hand, one a line as JSON; each reaches through its shot",
+            "metavar": "LOG.jsonl",
+            "group": "motion",
+        },
+    )
+    """What a person did to meshes by hand, or None."""
     cuts: str = field(
         default="auto",
         metadata={
@@ -104,6 +115,19 @@ class SolveOptions:
                 f"--cuts {self.cuts}: no such file; give auto, none or a file of frame numbers"
             )
         resolved(self.focus, self.weights)
+        if self.edits is not None and self.edits.edits:
+            self._check_edits()
+
+    def _check_edits(self) -> None:
+        """Refuse options with which edits cannot reach through a shot."""
+        if self.independent:
+            raise OptionError(
+                "--edits: with --independent no triangle outlives its frame; leave one of them out"
+            )
+        if self.triangulate.topology == "delaunay":
+            raise OptionError(
+                "--edits: --topology delaunay holds nothing fast; take --topology energy"
+            )
 
     @property
     def foci(self) -> tuple[Focus, ...]:

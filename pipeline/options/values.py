@@ -26,12 +26,18 @@ NAMES: dict[str, Callable[[str], Any]] = {
     "str": str,
     "Path": Path,
     "ndarray": lambda name: imported("stages.masks.gray:read_gray")(name),
+    "points": lambda name: imported("stages.layouts.point_file:read_points")(name),
 }
 """Types whose values are any text, among them names of files."""
 
 
 def kind_of(field: Field[Any]) -> str:
-    """The type of a field as it is written, such as `int`, but for its modules and None."""
+    """The type of a field as it is written, such as `int`, but for its modules and None.
+
+    Arrays that are not read as pictures say in their metadata what `reads` them.
+    """
+    if "reads" in field.metadata:
+        return str(field.metadata["reads"])
     return re.sub(r"<class '|'>|\w+\.| \| None$", "", str(field.type))
 
 

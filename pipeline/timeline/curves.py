@@ -12,6 +12,7 @@ from pipeline.timeline.targets import (
     MESH,
     OWN,
     PICTURE,
+    TONES,
     Kind,
     Target,
     kind_of_target,
@@ -115,5 +116,7 @@ def _unseen(target: Target, looks: Sequence[Look]) -> str:
             f"{target}: there are {names[target.owner]} of {target.owner}, counted from 0; "
             f"write {target.owner}[{names[target.owner] - 1}].{target.parameter}"
         )
+    if target.owner in TONES:
+        return f'{target}: no look has a {target.owner}; give one, such as palette = "sunset"'
     known = f"there are {', '.join(names)}" if names else "no style is named"
     return f"{target}: nothing shows {target.owner} ({known}); add it to a style = [...]"

@@ -13,7 +13,7 @@ from pipeline.options.look import Look
 from pipeline.options.nearest import nearest
 from pipeline.timeline.curves import read_curves
 from pipeline.timeline.place import Places, Table
-from pipeline.timeline.targets import MESH, OWN, Target, kind_of_target
+from pipeline.timeline.targets import MESH, OWN, TONES, Target, kind_of_target
 from pipeline.timeline.timeline import CUT, Section, Transition
 from pipeline.timeline.times import START, When, parse_span, parse_when
 from warp_kernels.errors import OptionError, TrimotionError
@@ -31,7 +31,7 @@ FORM = "write cut, fade 1 bar, wipe left 2s, scatter 1 bar or grow 1 bar"
 @cache
 def section_options() -> Mapping[str, Option]:
     """The options that a section may have, by name: what of a look may change over time."""
-    changing = {"regions", *OWN}
+    changing = {"regions", *OWN, *TONES}
     return {
         option.flag: option
         for option in job_options()

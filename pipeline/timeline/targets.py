@@ -23,6 +23,8 @@ MESH = {"triangles": "int", "error": "float", "focus.strength": "float"}
 """What changes meshes, and of which kind it is."""
 OWN = ("background",)
 """Fields of a look that may change and are no members."""
+TONES = ("palette", "grade")
+"""Fields of a look whose parameters may change as those of members do."""
 
 
 @dataclass(frozen=True)
@@ -88,6 +90,9 @@ def slots_of(look: Look) -> Iterator[Slot]:
                 yield Slot(registry.name_of(type(member)), field.name, place, member)
         else:
             yield Slot(registry.name_of(type(held)), field.name, None, held)
+    for name, member in look.toned.items():
+        if member is not None:
+            yield Slot(name, name, None, member)
     for place, region in enumerate(look.regions):
         yield Slot(STYLES.name_of(type(region.style)), "regions", place, region.style)
 
@@ -209,6 +214,8 @@ def kind_of_target(target: Target, look: Look) -> Kind | None:
     if slot is None:
         return None
     field = parameter_of(slot, target)
+    if field.metadata.get("is_built"):
+        raise ValueError(f"{target} does not change by a curve; give it to sections of their own")
     bounds = field.metadata.get("range", (float("-inf"), float("inf")))
     return Kind(
         kind_of(field).removesuffix(" | None"),

@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from pipeline.options.command_line import Option, job_options
+from pipeline.options.edit_log import EditLog
 from pipeline.track.plain_values import CLASS
 
 FREE = frozenset({"source", "frame_range"})
@@ -48,6 +49,8 @@ def _differing(
 
 def _shown(value: Any, empty: str = "auto") -> str:
     """A value as short as a message needs it, as the command line takes it."""
+    if isinstance(value, Mapping) and value.get(CLASS) == EditLog.__name__:
+        return f"({len(value['edits'])} edits)"
     if isinstance(value, Mapping) and CLASS in value:
         pairs = (f"{key}={_shown(entry)}" for key, entry in value.items() if key != CLASS)
         return ":".join(filter(None, (str(value[CLASS]), ",".join(pairs))))

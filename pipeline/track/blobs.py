@@ -22,6 +22,34 @@ def pack(array: np.ndarray, kind: str) -> bytes:
     return zlib.compress(planes.tobytes(), LEVEL)
 
 
+def unpack_rows(blob: Any, kind: str, width: int, most: int) -> np.ndarray:
+    """Unpack an array of which only the number of columns is known.
+
+    Args:
+        blob: What `pack` gave, if the file was not tampered with.
+        kind: Its type.
+        width: Its columns.
+        most: Most rows that it may have.
+
+    Raises:
+        ValueError: If the bytes are damaged or too many.
+
+    Returns:
+        Shape [N, width].
+    """
+    row = np.dtype(kind).itemsize * width
+    if not isinstance(blob, bytes):
+        raise ValueError(f"{type(blob).__name__} instead of bytes")
+    machine = zlib.decompressobj()
+    try:
+        size = len(machine.decompress(blob, most * row + 1))
+    except zlib.error as error:
+        raise ValueError(str(error)) from error
+    if size % row or size > most * row:
+        raise ValueError(f"{size} bytes of rows of {row}")
+    return unpack(blob, kind, (size // row, width))
+
+
 def unpack(blob: Any, kind: str, shape: tuple[int, ...]) -> np.ndarray:
     """Unpack an array.
 

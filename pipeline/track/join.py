@@ -10,7 +10,15 @@ from pathlib import Path
 from pipeline.track.agreement import differing_flags
 from pipeline.track.header import Header, write_header
 from pipeline.track.reader import TrackReader
-from pipeline.track.schema import TABLES, create, has_table, put_in_place, writing
+from pipeline.track.schema import (
+    LATER,
+    TABLES,
+    create,
+    has_table,
+    need_table,
+    put_in_place,
+    writing,
+)
 from stages.media import FrameRange
 from stages.media.writing.commit import PendingFile
 from warp_kernels.errors import OptionError, TrackError
@@ -116,6 +124,8 @@ def _copy(connection: sqlite3.Connection, path: Path) -> None:
     for table in TABLES:
         if not has_table(connection, table, "part"):
             continue
+        if table in LATER:
+            need_table(connection, table)
         connection.execute(f"INSERT INTO {table} SELECT * FROM part.{table} ORDER BY frame")
     connection.execute("COMMIT")
     connection.execute("DETACH part")

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from pipeline.track.blobs import unpack
+from pipeline.track.blobs import unpack, unpack_rows
 from pipeline.track.header import Header, read_header
 from pipeline.track.schema import (
     ENDING,
@@ -20,6 +20,7 @@ from pipeline.track.schema import (
     open_existing,
     reading,
 )
+from stages.hand.locks import NO_LOCKS, Locks
 from stages.media import FrameRange
 from stages.mesh import Mesh
 from stages.snapshot import Snapshot
@@ -155,6 +156,7 @@ class TrackReader:
                 energies=unpack(energies, "<f8", (T,)),
                 counts=covered,
                 limits=self._limits(frame, T),
+                locks=self._locks(frame, mesh),
             )
             assert_finite(snapshot)
         except ValueError as error:
@@ -197,6 +199,22 @@ class TrackReader:
                 return None
         found = self._all("SELECT limits FROM limits WHERE frame = ?", frame)
         return unpack(found[0][0], "u1", (T, 2, CHANNELS)) if found else None
+
+    def _locks(self, frame: int, mesh: Mesh) -> Locks:
+        """What of a frame's mesh a person holds fast."""
+        with reading(self.path):
+            if not has_table(self._connection, "locks"):
+                return NO_LOCKS
+        found = self._all("SELECT vertices, edges, bare FROM locks WHERE frame = ?", frame)
+        if not found:
+            return NO_LOCKS
+        vertices, edges, bare = found[0]
+        most = 3 * mesh.triangle_count
+        return NO_LOCKS.adding(
+            unpack_rows(vertices, "<i8", 1, most)[:, 0],
+            unpack_rows(edges, "<i8", 2, most),
+            unpack_rows(bare, "<i8", 1, most)[:, 0],
+        ).within(mesh)
 
     def _all(self, statement: str, *values: object) -> list[Any]:
         with reading(self.path):

@@ -11,6 +11,12 @@ Blobs are little-endian arrays, packed as `blobs` tells:
                 counts [T] int64
     topologies  triangles [T, 3] int32, vertex_ids [V] int64, triangle_ids [T] int64
     limits      limits [T, 2, 3] uint8 of polynomial colours; tracks of earlier programs have none
+    locks       ids of vertices [N], edges [M, 2] and bare triangles [K] that a person holds fast,
+                all int64; only where there are some
+
+Edits by hand that a person is at stand in `edits`, which is only ever appended to: a row names the
+edit that it follows, so those that were undone stay. The last row of `edit_places` says which of
+them is the last one in force.
 """
 
 import sqlite3
@@ -69,10 +75,17 @@ CREATE TABLE topologies (
 );
 """
 
-LIMITS = "CREATE TABLE limits (frame INTEGER PRIMARY KEY, limits BLOB NOT NULL)"
-"""A table that tracks of earlier programs lack."""
+LATER = {
+    "limits": "CREATE TABLE limits (frame INTEGER PRIMARY KEY, limits BLOB NOT NULL)",
+    "locks": "CREATE TABLE locks (frame INTEGER PRIMARY KEY, vertices BLOB NOT NULL, "
+    "edges BLOB NOT NULL, bare BLOB NOT NULL)",
+    "edits": "CREATE TABLE edits (number INTEGER PRIMARY KEY, follows INTEGER NOT NULL, "
+    "edit TEXT NOT NULL)",
+    "edit_places": "CREATE TABLE edit_places (step INTEGER PRIMARY KEY, number INTEGER NOT NULL)",
+}
+"""Tables that tracks of earlier programs lack; all but the first are made when they are needed."""
 
-TABLES = ("frames", "meshes", "topologies", "limits")
+TABLES = ("frames", "meshes", "topologies", "limits", "locks")
 """The tables whose rows belong to frames, `frame` first."""
 
 
@@ -90,7 +103,7 @@ def create(path: Path) -> sqlite3.Connection:
         connection.executescript(
             f"PRAGMA application_id = {APPLICATION}; PRAGMA user_version = {FORMAT};"
             "PRAGMA synchronous = NORMAL;"
-            f"BEGIN; {SCHEMA} {LIMITS}; COMMIT;"
+            f"BEGIN; {SCHEMA} {LATER['limits']}; COMMIT;"
         )
     return connection
 
@@ -142,8 +155,13 @@ def open_existing(path: Path) -> sqlite3.Connection:
 
 def complete(connection: sqlite3.Connection) -> None:
     """Give a track of an earlier program, with which a run goes on, the table that it lacks."""
-    if not has_table(connection, "limits"):
-        connection.execute(LIMITS)
+    need_table(connection, "limits")
+
+
+def need_table(connection: sqlite3.Connection, table: str) -> None:
+    """Make a table of `LATER` if it is not there."""
+    if not has_table(connection, table):
+        connection.execute(LATER[table])
 
 
 def has_table(connection: sqlite3.Connection, table: str, schema: str = "main") -> bool:
@@ -259,8 +277,9 @@ def _check_form(path: Path, connection: sqlite3.Connection) -> None:
                 f"{path}: the track is damaged (its table {name} is missing or has another form); "
                 "take a copy of it, or solve again"
             )
-    if found.get(("table", "limits")) == LIMITS:
-        del found["table", "limits"]
+    for table, statement in LATER.items():
+        if found.get(("table", table)) == statement:
+            del found["table", table]
     if found:
         raise TrackError(
             f"{path}: the track is damaged (it holds {', '.join(map(repr, sorted(found)[0]))}, "

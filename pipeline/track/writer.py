@@ -14,6 +14,7 @@ from pipeline.track.schema import (
     MOST_TRIANGLES,
     complete,
     create,
+    need_table,
     open_existing,
     put_in_place,
     writing,
@@ -84,12 +85,13 @@ class TrackWriter:
             self._connection = open_existing(self._path)
         return self._connection
 
-    def write(self, snapshot: Snapshot, shot: int) -> None:
+    def write(self, snapshot: Snapshot, shot: int, *, more: bool = False) -> None:
         """Append a frame, for good.
 
         Args:
             snapshot: What the frame became.
             shot: Number of the frame with which its shot begins.
+            more: Whether the next frame belongs to it: either both are there or none is.
 
         Raises:
             OutputError: If it cannot be written.
@@ -120,13 +122,21 @@ class TrackWriter:
             rows["topologies"] = (frame, *_packed_topology(mesh))
         if snapshot.limits is not None:
             rows["limits"] = (frame, pack(snapshot.limits, "u1"))
+        if not snapshot.locks.is_empty:
+            locks = snapshot.locks
+            held = (pack(ids, "<i8") for ids in (locks.vertices, locks.edges, locks.bare))
+            rows["locks"] = (frame, *held)
         connection = self._opened()
         with writing(self._path):
-            connection.execute("BEGIN IMMEDIATE")
+            if not connection.in_transaction:
+                connection.execute("BEGIN IMMEDIATE")
+            if "locks" in rows:
+                need_table(connection, "locks")
             for table, values in rows.items():
                 places = ", ".join("?" * len(values))
                 connection.execute(f"INSERT INTO {table} VALUES ({places})", values)
-            connection.execute("COMMIT")
+            if not more:
+                connection.execute("COMMIT")
         self._topology, self._shot = mesh, shot
 
     def finish(self) -> None:

@@ -7,6 +7,8 @@ import numpy as np
 from stages.flows import Flow
 from stages.flows.field import FlowField
 from stages.flows.patch_matching import LINES, unlikeness, vote
+from stages.flows.pursuit import LINES as CLOSE_LINES
+from stages.flows.pursuit import pursue
 from stages.flows.view import View
 
 DOUBTFUL = 2.0
@@ -52,6 +54,20 @@ class Passage:
         pictures = self.earlier.reduced(LINES), self.later.reduced(LINES)
         steps, misfits = vote(points, self.flow, *pictures)
         return steps, 1.0 / (1.0 + (misfits.astype(np.float64) / DOUBTFUL) ** 2)
+
+    def pursue(self, points: np.ndarray, steps: np.ndarray) -> np.ndarray:
+        """Follow a few points more closely than all others.
+
+        Args:
+            points: Positions in the earlier picture [px], shape [N, 2].
+            steps: Estimates of their motion [px], shape [N, 2].
+
+        Returns:
+            Motion [px], shape [N, 2].
+        """
+        earlier, later = self.earlier.reduced(CLOSE_LINES), self.later.reduced(CLOSE_LINES)
+        scale = np.array([earlier.shape[1] / self.flow.width, earlier.shape[0] / self.flow.height])
+        return pursue(scale * points, scale * steps, earlier, later) / scale
 
     def unlikeness(self, points: np.ndarray, steps: np.ndarray) -> np.ndarray:
         """How much the picture around points looks unlike that around where they went.

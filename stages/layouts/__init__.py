@@ -30,6 +30,12 @@ LAYOUTS: Registry[Layout] = Registry(
     {
         "grid": "stages.layouts.grid:Grid",
         "importance": "stages.layouts.importance:Importance",
+        "poisson": "stages.layouts.poisson:Poisson",
+        "edges": "stages.layouts.outlines:Outlines",
+        "radial": "stages.layouts.radial:Radial",
+        "hex": "stages.layouts.hexagons:Hexagons",
+        "phyllotaxis": "stages.layouts.phyllotaxis:Phyllotaxis",
+        "points": "stages.layouts.points:Points",
     },
     method="build",
 )

@@ -5,7 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from stages.flows.passage import Passage
+from stages.hand.locks import NO_LOCKS, Locks
+from stages.hand.worked import Worked
 from stages.mesh import Mesh, heights_of
+from stages.motion.held_path import held_path
 from stages.motion.occlusion import collapse_covered
 
 LOWEST = 0.25
@@ -25,9 +28,20 @@ class Carried:
     patches: np.ndarray | None = None
     """How badly the patches around the vertices fit where they are now, and their contrast [code
     values], shape [V, 2]; None if that is not known."""
+    locks: Locks = NO_LOCKS
+    """What of it a person holds fast."""
+
+    @classmethod
+    def by_hand(cls, worked: Worked) -> "Carried":
+        """A mesh that a person has worked on: all of it is where it belongs.
+
+        Args:
+            worked: The mesh, and what of it is held fast.
+        """
+        return cls(worked.mesh, np.ones(worked.mesh.vertex_count), locks=worked.locks)
 
 
-def advect(mesh: Mesh, passage: Passage) -> Carried:
+def advect(mesh: Mesh, passage: Passage, locks: Locks = NO_LOCKS) -> Carried:
     """Move every vertex by the motion of the picture under it.
 
     Border vertices slide along their border, corners stay. Triangles that would fold are covered
@@ -37,6 +51,8 @@ def advect(mesh: Mesh, passage: Passage) -> Carried:
     Args:
         mesh: A valid mesh.
         passage: Leads from the mesh's frame to the next.
+        locks: What of the mesh a person holds fast: it goes along as well, and vanishes only where
+            it is covered.
 
     Returns:
         A valid mesh of the same triangles or fewer; ids are kept.
@@ -46,11 +62,14 @@ def advect(mesh: Mesh, passage: Passage) -> Carried:
     Deviation: it does not move that mesh; the flow lets vertices follow fast motion.
     """
     steps, trust = passage.follow(mesh.vertices)
-    kept, steps = collapse_covered(mesh, sliding(mesh, steps), LOWEST)
+    if not locks.is_empty:
+        steps, locks = held_path(mesh, steps, passage, locks)
+    kept, steps = collapse_covered(mesh, sliding(mesh, steps), LOWEST, locks.vertices)
     places = np.searchsorted(mesh.vertex_ids, kept.vertex_ids)  # ids ascend with the rows
     steps = unfolded(kept, steps)
     patches = passage.unlikeness(kept.vertices, steps)
-    return Carried(kept.moved(kept.vertices + steps), trust[places], patches)
+    there = kept.moved(kept.vertices + steps)
+    return Carried(there, trust[places], patches, locks.within(there))
 
 
 def sliding(mesh: Mesh, steps: np.ndarray) -> np.ndarray:

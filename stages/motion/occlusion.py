@@ -14,7 +14,9 @@ LEAST_RELIEF = 1e-9
 """A collapse must lessen what is missing by more than this, which is rounding [px]."""
 
 
-def collapse_covered(mesh: Mesh, steps: np.ndarray, least_height: float) -> tuple[Mesh, np.ndarray]:
+def collapse_covered(
+    mesh: Mesh, steps: np.ndarray, least_height: float, held: np.ndarray | None = None
+) -> tuple[Mesh, np.ndarray]:
     """Collapse triangles that motion turns over: one thing has slid over another there.
 
     What the triangles around a vertex lack to their least height is taken together; edges
@@ -24,10 +26,13 @@ def collapse_covered(mesh: Mesh, steps: np.ndarray, least_height: float) -> tupl
         mesh: A valid mesh.
         steps: Where its vertices go [px], shape [V, 2].
         least_height: Height that moved triangles shall have, unless they were lower [px].
+        held: Ids of vertices that a person holds fast: they go only where no other helps; None
+            for none.
 
     Returns:
         A valid mesh at the old places, and the steps of its vertices.
     """
+    barred = held if held is not None and len(held) else None
     for _ in range(MOST_ROUNDS):
         moved = mesh.moved(mesh.vertices + steps)
         least = np.minimum(least_height, (1.0 - 1e-9) * mesh.heights)
@@ -41,12 +46,18 @@ def collapse_covered(mesh: Mesh, steps: np.ndarray, least_height: float) -> tupl
         edits, triangles, heights = collapsed_heights(moved, origins, destinations)
         after = np.maximum(0.0, least[triangles] - heights)
         relief = before - np.bincount(edits, after, len(origins))
-        useful = np.flatnonzero(relief > LEAST_RELIEF)
+        helps = relief > LEAST_RELIEF
+        if barred is not None:
+            helps &= ~np.isin(mesh.vertex_ids[origins], barred)
+        useful = np.flatnonzero(helps)
         useful = useful[collapsible(mesh, half_edges[useful], reverse=reverse[useful])]
         useful = useful[np.argsort(-relief[useful], kind="stable")]
         useful = useful[independent_collapses(mesh, half_edges[useful], reverse[useful])]
         if not len(useful):
-            break
+            if barred is None:
+                break
+            barred = None
+            continue
         stays = np.ones(mesh.vertex_count, dtype=bool)
         stays[origins[useful]] = False
         mesh = collapse_edges(mesh, half_edges[useful], reverse[useful])

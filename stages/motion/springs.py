@@ -8,10 +8,13 @@ from stages.motion.advect import Carried
 REST_FIRMNESS, FIRMEST = 1.5, 4.0
 """Where weights lead triangles elsewhere the spring grows with this power of the mean weight beside
 the median one, up to so many times."""
+LOCK = 1e12
+"""Strength of the spring of what a person holds fast [code value^2]: whatever pulls at it moves it
+by less than the dead band."""
 
 
 def springs_of(
-    mesh: Mesh, seed: Carried, strength: float, weights: np.ndarray | None
+    mesh: Mesh, seed: Carried, strength: float, weights: np.ndarray | None, hold: float = 0.0
 ) -> np.ndarray:
     """Where the temporal term holds each vertex, and how strongly; new ones are free.
 
@@ -21,6 +24,7 @@ def springs_of(
         strength: Of the spring where the motion is certain [code value^2].
         weights: The picture's: what pulls at a vertex grows with them, and so must its spring;
             [H, W] uint8, or None.
+        hold: Of the spring wherever the motion leads, for a layout that is kept [code value^2].
 
     Returns:
         Places [px] and strengths [code value^2], [V, 3].
@@ -30,9 +34,11 @@ def springs_of(
     old = np.searchsorted(seed.mesh.vertex_ids, mesh.vertex_ids)
     known = mesh.vertex_ids < seed.mesh.next_vertex_id
     springs[known, :2] = seed.mesh.vertices[old[known]]
-    springs[known, 2] = strength * seed.trust[old[known]]
+    springs[known, 2] = strength * seed.trust[old[known]] + hold
     if weights is not None:
         springs[:, 2] *= _firmness(weights, springs[:, :2])
+    if not seed.locks.is_empty:
+        springs[np.isin(mesh.vertex_ids, seed.locks.vertices), 2] = LOCK
     return springs
 
 

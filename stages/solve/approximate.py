@@ -9,6 +9,7 @@ from stages.mesh import Mesh
 from stages.optimize import load_mesh, optimize
 from stages.optimize_options import OptimizeOptions
 from stages.solve.convergence import Convergence
+from stages.solve.hold import FREE, Hold
 from stages.solve.mend import divide_torn
 from stages.topology import Topology
 from stages.topology.appraise import Appraiser
@@ -16,6 +17,7 @@ from stages.topology.area_limit import divide_large
 from stages.topology.exact_count import with_exactly
 from stages.topology.goal import Goal
 from stages.topology.growth import Growth
+from warp_kernels.color_model import CHANNELS
 from warp_kernels.energy.workspace import Workspace
 
 FEW = 64
@@ -55,6 +57,13 @@ class Approximator:
     """How vertices move."""
     iterations: int
     """Most iterations; fewer where the energy has converged."""
+    hold: Hold = FREE
+    """How much of the layout is kept."""
+
+    @property
+    def keeps_layout(self) -> bool:
+        """Whether the layout is the look: nothing is moved, and no triangle comes or goes."""
+        return self.iterations == 0 or self.hold.is_full
 
     def growth(self, goal: Goal) -> Growth:
         """How the number of triangles develops: a threshold decides by itself, from few on."""
@@ -70,8 +79,20 @@ class Approximator:
             mesh: A layout.
             goal: What the result must be like.
         """
+        if self.keeps_layout:
+            load_mesh(self.workspace, mesh)
+            return mesh
+        layout = mesh
         mesh = self._counted(self._refine(mesh, goal), goal, SPARE)
-        return self.within_limits(self._settle(mesh), goal)
+        return self.within_limits(self._settle(mesh, layout), goal)
+
+    def _springs(self, layout: Mesh, mesh: Mesh) -> np.ndarray | None:
+        """What holds a mesh to its layout, or None."""
+        if self.hold.share == 0.0:
+            return None
+        energy = float(self.appraiser.energies(mesh).sum())
+        error = 2.0 * energy / (CHANNELS * mesh.width * mesh.height)
+        return self.hold.springs(layout, mesh, error)
 
     def _counted(self, mesh: Mesh, goal: Goal, spare: float = 1.0) -> Mesh:
         """The mesh with the number of triangles that is wanted; a threshold's is a cap only."""
@@ -84,9 +105,9 @@ class Approximator:
         """Alternate optimisation and changes of topology until the wanted number is reached."""
         growth = self.growth(goal)
         rounds = max(1, int(self.iterations * REFINING_SHARE) // ROUND)
-        convergence = Convergence()
+        convergence, layout = Convergence(), mesh
         for number in range(1, rounds + 1):
-            load_mesh(self.workspace, mesh)
+            load_mesh(self.workspace, mesh, self._springs(layout, mesh))
             mesh = optimize(self.workspace, mesh, ROUND, self.options)
             progress = number / rounds
             # on the way the energy falls and rises with the number of triangles
@@ -100,14 +121,14 @@ class Approximator:
                 mesh = self.topology.adapt(mesh, self.appraiser, target)
         return mesh
 
-    def _settle(self, mesh: Mesh) -> Mesh:
+    def _settle(self, mesh: Mesh, layout: Mesh) -> Mesh:
         """The last iterations: no change of topology, smaller and smaller steps.
 
         Source: Lawonn & Guenther, Stylized Image Triangulation (2018), Sec. 6.6 (no Delaunay at
             the end), Sec. 3.2 (trust region that decreases over time).
         """
         left = self.iterations - int(self.iterations * REFINING_SHARE) // ROUND * ROUND
-        load_mesh(self.workspace, mesh)
+        load_mesh(self.workspace, mesh, self._springs(layout, mesh))
         convergence = Convergence()
         for begin in range(0, left, ROUND):
             mesh = optimize(
@@ -130,6 +151,8 @@ class Approximator:
             torn: Tells the numbers of such triangles, [N].
             goal: What it must be like.
         """
+        if self.keeps_layout or self.hold.share:  # as many others would go, of the layout's
+            return mesh
         bad = torn(mesh)
         for _ in range(MENDINGS):
             if not len(bad):

@@ -22,6 +22,8 @@ along y [px]: there an even slope goes on."""
 STEPS = (1.0, 1.0, 1.0, 1.0, 0.5, 0.5, 0.5, 0.5)
 """How much of what they ask for the worst pixels get, time after time: half of it at last, for two
 that cannot both have it meet in the middle."""
+UNKNOWN = 1e300
+"""Bound for the energy of a triangle in a colour that is tried [code value^2 px]."""
 RIDGE = 1e-6
 """Keeps the least change unique in triangles that are almost lines [1]."""
 SAMPLES = np.array([(i, j, 4 - i - j) for i in range(5) for j in range(5 - i)]) / 6 + 1 / 9
@@ -107,19 +109,21 @@ class Limiter:
         if not len(rows):
             return coefficients, energies
         coefficients, energies, moved = coefficients.copy(), energies.copy(), coefficients.copy()
-        least, looked_at = found.counts, np.where(found.counts > 0, np.inf, 0.0)
+        least, told = found.counts, np.zeros(mesh.triangle_count)
         for step in STEPS:
             origins = centres_of(mesh.corners[rows])
             local = with_origins(self._workspace.model, moved[rows], origins)
             local += step * self._corrections(mesh, rows, found)
             moved[rows] = with_origins(self._workspace.model, local, -origins)
-            found = self._nearby.measure(moved, looked_at, limits)
+            found = self._nearby.measure(moved, np.where(least > 0, UNKNOWN, 0.0), limits)
             better = found.counts < least
-            coefficients[better], energies[better] = moved[better], found.energies[better]
+            coefficients[better], told[better] = moved[better], np.inf
             least = np.minimum(least, found.counts)
             if not least.any():
                 break
         self.torn = np.flatnonzero(least)
+        changed = told > 0
+        energies[changed] = self._nearby.measure(coefficients, told, limits).energies[changed]
         return coefficients, energies
 
     def _corrections(self, mesh: Mesh, rows: np.ndarray, found: Departures) -> np.ndarray:

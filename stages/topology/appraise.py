@@ -2,9 +2,11 @@
 
 import numpy as np
 
+from stages.hand.locks import NO_LOCKS, Held, Locks
 from stages.mesh import Mesh
 from stages.optimize import place_mesh
 from stages.snapshot import colors_at_centres
+from warp_kernels.energy.topology_gains import IMPOSSIBLE
 from warp_kernels.energy.topology_survey import Survey
 from warp_kernels.energy.workspace import Workspace
 
@@ -27,6 +29,9 @@ class Appraiser:
         self._least_height = least_height
         self._survey = Survey(workspace)
         self.limit(np.inf)
+        self._locks = NO_LOCKS
+        self.held: Held | None = None
+        """What a person holds fast of the measured mesh; None for nothing."""
         self._measured: Mesh | None = None
         self._energies = np.zeros(0)
         self.colors = np.zeros((0, 3))
@@ -47,6 +52,7 @@ class Appraiser:
         self.colors = colors_at_centres(mesh, self._workspace.model, coefficients)
         self._survey.load_topology(mesh.twins, mesh.triangles.reshape(-1))
         self._measured = mesh
+        self.held = None if self._locks.is_empty else self._locks.held(mesh)
         return self._energies
 
     def emphasis(self, half_edges: np.ndarray) -> np.ndarray | float:
@@ -66,6 +72,27 @@ class Appraiser:
         heaviest: np.ndarray = np.maximum(weights[half_edges // 3], weights[beside // 3])
         return heaviest**EMPHASIS
 
+    def hold(self, locks: Locks) -> None:
+        """Bar changes of what a person holds fast.
+
+        Args:
+            locks: From now on, in place of others.
+        """
+        self._locks = locks
+        self._measured = None
+
+    def loose(self, mesh: Mesh, triangles: np.ndarray) -> np.ndarray:
+        """Those of some triangles that have no corner which is held fast.
+
+        Args:
+            mesh: A mesh, measured or not.
+            triangles: Their numbers, shape [N].
+        """
+        if self._locks.is_empty:
+            return triangles
+        held = self._locks.held(mesh).kept
+        return triangles[~held[mesh.triangles[triangles]].any(axis=1)]
+
     def forget(self) -> None:
         """The picture has changed: what was measured is void."""
         self._measured = None
@@ -81,12 +108,22 @@ class Appraiser:
 
     def flip_gains(self, half_edges: np.ndarray) -> np.ndarray:
         """Energy that flipping each edge of the measured mesh saves [code value^2 px], [N]."""
-        return self._survey.flip_gains(half_edges)
+        gains = self._survey.flip_gains(half_edges)
+        if self.held is None:
+            return gains
+        return np.where(self.held.edges[half_edges], -IMPOSSIBLE, gains)
 
     def collapse_costs(self, half_edges: np.ndarray) -> np.ndarray:
         """Energy that moving each origin into its destination adds [code value^2 px], [N]."""
-        return self._survey.collapse_costs(half_edges)
+        costs = self._survey.collapse_costs(half_edges)
+        if self.held is None or self._measured is None:
+            return costs
+        origins = self._measured.triangles.reshape(-1)[half_edges]
+        return np.where(self.held.kept[origins], IMPOSSIBLE, costs)
 
     def split_gains(self, half_edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Energy that the best split of each edge saves [code value^2 px], [N], and its place."""
-        return self._survey.split_gains(half_edges)
+        gains, points = self._survey.split_gains(half_edges)
+        if self.held is None:
+            return gains, points
+        return np.where(self.held.undivided[half_edges], -IMPOSSIBLE, gains), points

@@ -52,6 +52,8 @@ class Energy:
     """Most vertices that one round moves elsewhere, as a part of the triangles."""
     profit: float = 1.5
     """A vertex moves elsewhere if its gain there exceeds its cost here this many times."""
+    flip: float = 0.0
+    """In a first frame a flip must save this part of its two triangles' energy."""
     calm_flip: float = 0.01
     """In a followed picture a flip must save this part of its two triangles' energy."""
     calm_flip_floor: float = 0.04
@@ -85,7 +87,7 @@ class Energy:
         mesh = divide_large(mesh, goal.largest_area)
         if goal.calm:
             thin = np.flatnonzero(mesh.heights < CALM_SLIVER_HEIGHT)
-            mesh = press_slivers(mesh, thin, CALM_SLIVER_HEIGHT)
+            mesh = press_slivers(mesh, appraiser.loose(mesh, thin), CALM_SLIVER_HEIGHT)
         else:
             mesh = collapse_slivers(mesh, SLIVER_HEIGHT, most_rounds=SLIVER_ROUNDS)
         if goal.unrest is not None:
@@ -124,7 +126,7 @@ class Energy:
     def _flips(self, mesh: Mesh, appraiser: Appraiser, goal: Goal) -> np.ndarray:
         """Edges whose flip pays, best first."""
         if not goal.calm:
-            return ranked_flips(mesh, appraiser, least_share=0.0, floor=0.0)
+            return ranked_flips(mesh, appraiser, least_share=self.flip, floor=0.0)
         floor = self.calm_flip_floor * appraiser.energies(mesh).mean()
         calm = None if goal.unrest is None else goal.unrest.calm(mesh)
         return ranked_flips(mesh, appraiser, self.calm_flip, floor, calm)

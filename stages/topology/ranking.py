@@ -65,6 +65,8 @@ def ranked_splits(
     edges = mesh.edge_half_edges
     if within is not None:
         edges = edges[~beside_edges(mesh, ~within, edges)]
+    if appraiser.held is not None:
+        edges = edges[~appraiser.held.undivided[edges]]
     twins = mesh.twins[edges]
     added = np.where(twins >= 0, 2, 1)
     beside = energies[edges // 3] + np.where(twins >= 0, energies[twins // 3], 0.0)
@@ -93,6 +95,8 @@ def ranked_collapses(
         worth: Factor of the costs at each vertex, [V]; None for 1.
     """
     spread = np.where(mesh.on_left_right & mesh.on_top_bottom, np.inf, _spread(mesh, appraiser))
+    if appraiser.held is not None:
+        spread[appraiser.held.kept] = np.inf
     if worth is not None:
         spread *= worth
     likely = np.argsort(spread, kind="stable")[: EXAMINED * most]

@@ -22,6 +22,11 @@ NEAR = 4
 """Pixels around one count so far away, along rows and along columns [px]."""
 LEEWAY = 39.0
 """Most that a colour may leave the range of the pixels around one [code values]."""
+BLOCK = 16
+"""Pixels whose channels fill whole registers, and are compared at once."""
+
+Bytes = wp.types.vector(length=CHANNELS * BLOCK, dtype=wp.uint8)
+"""The channels of a block of pixels, as they lie in memory."""
 
 
 @wp.struct
@@ -30,6 +35,13 @@ class Range:
 
     low: wp.vec3d
     high: wp.vec3d
+
+
+@wp.func
+def read_whole(pixels: wp.array2d(dtype=wp.vec3ub), row: int, column: int) -> wp.vec3i:
+    """A pixel's code values as integers, which compare faster."""
+    pixel = pixels[row, column]
+    return wp.vec3i(int(pixel[0]), int(pixel[1]), int(pixel[2]))
 
 
 @wp.func
@@ -64,8 +76,8 @@ def range_around(
     slack = wp.float64(wp.static(LEEWAY))
     leeway = wp.vec3d(slack, slack, slack)
     result = Range()
-    result.low = read(pixels, row, column) - leeway
-    result.high = read(pixels, row, column) + leeway
+    low = read_whole(pixels, row, column)
+    high = low
     # nearly always a few of them are enough
     step = int(NEAR)
     held = bool(False)
@@ -73,13 +85,65 @@ def range_around(
         for down in range(-NEAR, NEAR + 1, step):
             y = wp.clamp(row + down, 0, pixels.shape[0] - 1)
             for right in range(-NEAR, NEAR + 1, step):
-                value = read(pixels, y, wp.clamp(column + right, 0, pixels.shape[1] - 1))
-                result.low = wp.min(result.low, value - leeway)
-                result.high = wp.max(result.high, value + leeway)
+                value = read_whole(pixels, y, wp.clamp(column + right, 0, pixels.shape[1] - 1))
+                low = wp.min(low, value)
+                high = wp.max(high, value)
+        result.low = wp.vec3d(low) - leeway
+        result.high = wp.vec3d(high) + leeway
         inside = wp.min(wp.max(shown, result.low), result.high)
         held = farthest(inside, shown) == wp.float64(0.0)
         step = step // NEAR
     return result
+
+
+@wp.func
+def channel_by_channel(color: wp.vec3d) -> Bytes:
+    """Code values for a block of pixels, rounded down and limited to what a byte holds."""
+    values = Bytes()
+    for n in range(wp.static(BLOCK)):
+        for channel in range(wp.static(CHANNELS)):
+            value = wp.uint8(wp.clamp(color[channel], wp.float64(0.0), wp.float64(255.0)))
+            values[wp.static(CHANNELS) * n + channel] = value
+    return values
+
+
+@wp.func_native("""
+    const unsigned char* line = (const unsigned char*)&wp::index(pixels, row, 0);
+    const unsigned char* least = (const unsigned char*)&low;
+    const unsigned char* most = (const unsigned char*)&high;
+    while (column < end) {
+        int block_end = column + 16 < end ? column + 16 : end;
+#if !defined(__CUDA_ARCH__)
+        // what is left of a row is looked at together with pixels before it
+        const int begin = block_end - 16;
+        if (begin >= 0) {
+            typedef unsigned char Bytes __attribute__((vector_size(16)));
+            typedef long long Words __attribute__((vector_size(16)));
+            Words out = {};
+            for (int part = 0; part < 48; part += 16) {
+                Bytes value, lower, upper;
+                __builtin_memcpy(&value, line + 3 * begin + part, 16);
+                __builtin_memcpy(&lower, least + part, 16);
+                __builtin_memcpy(&upper, most + part, 16);
+                out |= (Words)((value < lower) | (value > upper));
+            }
+            if (!(out[0] | out[1])) column = block_end;
+        }
+#endif
+        for (; column < block_end; ++column) {
+            for (int c = 0; c < 3; ++c) {
+                const unsigned char value = line[3 * column + c];
+                if (value < least[c] || value > most[c]) return column;
+            }
+        }
+    }
+    return end;
+""")
+def first_outside(
+    pixels: wp.array2d(dtype=wp.vec3ub), row: int, column: int, end: int, low: Bytes, high: Bytes
+) -> int:
+    """The first column of a row, from one on, with a channel outside of bounds; `end` if none."""
+    ...
 
 
 @cache
@@ -149,14 +213,24 @@ def nearby_kernel(model: ColorModel) -> Any:
         squares = wp.float64(0.0)
         is_told = wp.isinf(energies[triangle])
         color = color_at(coefficients, triangle, 0, 0)
+        # bounds with something to spare, for rounding; no colour is farther beyond 0 or 255 than
+        # the leeway, so that bytes limit none of them
+        spare = wp.float64(wp.static(LEEWAY - 2.0))
+        least = channel_by_channel(color - wp.vec3d(spare, spare, spare))
+        most = channel_by_channel(color + wp.vec3d(spare, spare, spare))
         for channel in range(3):
             places_out[triangle, channel] = wp.vec2i(0, 0)
         while walk.row + 1 < walk.end:
             walk = step_down(walk, height)
             columns = columns_of(walk, pixels.shape[1])
-            for column in range(columns[0], columns[1]):
+            column = columns[0]
+            while column < columns[1]:
                 if wp.static(model.degree > 0):
                     color = color_at(coefficients, triangle, walk.row, column)
+                elif not is_told:
+                    column = first_outside(pixels, walk.row, column, columns[1], least, most)
+                    if column == columns[1]:
+                        break
                 value = read(pixels, walk.row, column)
                 if is_told:
                     squares += wp.dot(color - value, color - value)
@@ -171,6 +245,7 @@ def nearby_kernel(model: ColorModel) -> Any:
                             worst[channel] = wp.abs(asked[channel] - shown[channel])
                             changes[channel] = asked[channel] - color[channel]
                             places_out[triangle, channel] = wp.vec2i(column, walk.row)
+                column += 1
         counts_out[triangle] = count
         changes_out[triangle] = changes
         energies_out[triangle] = wp.float64(0.5) * squares

@@ -59,4 +59,5 @@ def _own(device: Device, model: ColorModel, sums: str, weighted: bool) -> list[A
         moments = fragment_kernel(layout)
     along, _ = edge_kernel(device, layout, 1)
     energies = energy_kernel(layout, sums)
-    return [moments, energies, fit_kernel(layout), along, descend, table_kernel(layout)]
+    tables, _ = table_kernel(device, layout)
+    return [moments, energies, fit_kernel(layout), along, descend, tables]

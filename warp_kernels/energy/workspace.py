@@ -78,7 +78,7 @@ class Workspace:
         self._front = 0
         self.placed: object = None
         """The mesh that lies here, as its owner knows it, over the picture at hand."""
-        self._held = False
+        self._held = self._fitted = False
         self._allocate(vertices=512, triangles=1024)
 
     def load_image(self, pixels: np.ndarray, weights: np.ndarray | None = None) -> None:
@@ -98,6 +98,7 @@ class Workspace:
         Deviation: the paper has no weights.
         """
         self.placed = None  # what was summed along edges belongs to the picture before
+        self._fitted = False
         self.device.write(self.pixels, pixels)
         if self.weighted:
             self._load_weights(weights)
@@ -136,10 +137,9 @@ class Workspace:
             fan_corners: Corners 3 t + c by vertex, [3 T].
             freedom: 1 where a coordinate may change, else 0, [V, 2].
         """
-        self.placed, self._held = None, False
-        self._counts = (len(vertices), len(triangles), len(edges))
+        self.placed, self._held, self._fitted = None, False, False
+        self._counts, self._front = (len(vertices), len(triangles), len(edges)), 0
         self._grow()
-        self._front = 0
         for array, values in (
             (self._vertices[0], vertices),
             (self.triangles, triangles),
@@ -184,7 +184,7 @@ class Workspace:
         """
         if not self._held:
             raise ValueError("a mesh was placed and not held; see `hold`")
-        self.placed = None
+        self.placed, self._fitted = None, False
         self._displace(displacement)
         self.device.write(self._controls, np.array([trust, regularity, dead_band]))
         there, back = (
@@ -205,7 +205,7 @@ class Workspace:
 
     def vertices(self) -> np.ndarray:
         """Positions as they stand now [px], [V, 2] float64."""
-        return self.device.read(self._vertices[self._front], self._counts[0])
+        return self.device.read(self.standing, self._counts[0])
 
     def energies(self) -> np.ndarray:
         """E of all thirteen variants of every triangle as it stands, 1 px apart, [T, 13]."""
@@ -229,19 +229,18 @@ class Workspace:
         return color.view(np.int64), area.view(np.int64)
 
     def fit(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Best colours of the mesh as it stands.
+        """Best colours of the mesh as it stands; asked for again they are only read.
 
         Returns:
             Coefficients [T, 3, K] float64, energies [T] float64, and counts [T] int64: the pixels
             covered, or with weights the sum of theirs after division by the common divisor.
         """
-        self.device.run([self._fit_sums[self._front], self._fit])
-        count = self._counts[1]
-        return (
-            self.device.read(self._coefficients, count),
-            self.device.read(self.fit_energies, count),
-            self.device.read(self._fit_counts, count),
-        )
+        if not self._fitted:
+            self.device.run([self._fit_sums[self._front], self._fit])
+            self._fitted = True
+        fitted = (self._coefficients, self.fit_energies, self._fit_counts)
+        coefficients, energies, counts = (self.device.read(a, self._counts[1]) for a in fitted)
+        return coefficients, energies, counts
 
     def _displace(self, displacement: float) -> None:
         """Set the distance of the variants; sums taken at another one are void."""

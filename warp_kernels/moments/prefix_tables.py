@@ -39,6 +39,65 @@ def table_entry(row: int, column: int, width: int, depth: int) -> int:
     return ((block * (width + 1) + column) * _BLOCK + row - block * _BLOCK) * depth
 
 
+_SUM_BLOCK = """
+    // of the last block's rows those beyond the picture are never read
+    const wp::vec_t<3, wp::uint8>* rows[BLOCK_ROWS];
+    for (int r = 0; r < BLOCK_ROWS; ++r) {
+        const int row = block * BLOCK_ROWS + r;
+        rows[r] = &wp::index(pixels, row < height ? row : height - 1, 0);
+    }
+    int* out = (int*)table + block * (unsigned long long)(width + 1) * (BLOCK_ROWS * 4);
+#if defined(__CUDA_ARCH__)
+    int left[BLOCK_ROWS][4] = {};
+#else
+    typedef int Words __attribute__((vector_size(16), aligned(4)));
+    Words left[BLOCK_ROWS] = {};
+#endif
+    for (int column = 0; column < width; ++column) {
+        for (int r = 0; r < BLOCK_ROWS; ++r, out += 4) {
+            const int red = rows[r][column][0], green = rows[r][column][1];
+            const int blue = rows[r][column][2];
+            const int square = red * red + green * green + blue * blue;
+#if defined(__CUDA_ARCH__)
+            for (int n = 0; n < 4; ++n) out[n] = left[r][n];
+            left[r][0] += red;
+            left[r][1] += green;
+            left[r][2] += blue;
+            left[r][3] += square;
+#else
+            *(Words*)out = left[r];
+            left[r] += Words{red, green, blue, square};
+#endif
+        }
+    }
+    for (int r = 0; r < BLOCK_ROWS; ++r)
+        for (int n = 0; n < 4; ++n) *out++ = left[r][n];
+"""
+
+
+@wp.func_native(f"constexpr int BLOCK_ROWS = {BLOCK_ROWS};" + _SUM_BLOCK)
+def sum_block(
+    pixels: wp.array2d(dtype=wp.vec3ub), block: int, table: wp.uint64, width: int, height: int
+):
+    """Fill the entries of one block of rows: of one colour, in the narrow layout."""
+    ...
+
+
+@wp.kernel(module="unique", module_options=EXACT)
+def sum_rows_of_block(
+    span: wp.array(dtype=wp.vec2i),
+    # In:
+    pixels: wp.array2d(dtype=wp.vec3ub),
+    weights: wp.array2d(dtype=wp.uint8),
+    # Out:
+    table_out: wp.array(dtype=wp.vec4i),
+):
+    """Sum the rows of one block from left to right side by side: whole cache lines are written."""
+    block = span[0][0] + wp.tid()
+    if block < span[0][1]:
+        sum_block(pixels, block, table_out.ptr, pixels.shape[1], pixels.shape[0])
+
+
 @cache
 def _narrow_table_kernel(layout: MomentLayout) -> Any:
     depth = layout.depth
@@ -125,8 +184,15 @@ def _wide_table_kernel(layout: MomentLayout) -> Any:
     return sum_row
 
 
-def table_kernel(layout: MomentLayout) -> Any:
-    """The kernel that fills a row of the prefix table."""
+def table_kernel(device: Device, layout: MomentLayout) -> tuple[Any, int]:
+    """The kernel that fills the prefix table, and how many rows each of its threads fills."""
+    # on CUDA more threads are worth more
+    if layout.depth == 1 and not device.is_cuda:
+        return sum_rows_of_block, BLOCK_ROWS
+    return _row_kernel(layout), 1
+
+
+def _row_kernel(layout: MomentLayout) -> Any:
     return _wide_table_kernel(layout) if layout.wide else _narrow_table_kernel(layout)
 
 
@@ -151,6 +217,7 @@ def record_image_tables(
     Deviation: prefix sums along rows take the place of sums over fragments; the paper has no
         weights.
     """
-    phase = device.record(table_kernel(layout), [pixels, weights], [table_out])
-    phase.resize(pixels.shape[0])
+    kernel, rows = table_kernel(device, layout)
+    phase = device.record(kernel, [pixels, weights], [table_out])
+    phase.resize(-(-pixels.shape[0] // rows))
     return phase

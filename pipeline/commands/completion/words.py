@@ -10,6 +10,8 @@ from pipeline.options.presets import shipped_presets
 from pipeline.timeline.timeline import shipped_timelines
 from stages.look.output_size import NAMED_SIZES
 from stages.media.writing.codecs import VIDEO_CODECS
+from stages.toning.grade import Grade
+from stages.toning.palette import PALETTES
 from warp_kernels.styles.color_names import COLOR_NAMES
 
 MOST_LETTERS = 70
@@ -21,6 +23,8 @@ LISTED: dict[str, Iterable[str]] = {
     "output_size": NAMED_SIZES,
     "codec": VIDEO_CODECS,
     "background": COLOR_NAMES,
+    "palette": PALETTES,
+    "grade": tuple(f"{name}=" for name in Grade.__dataclass_fields__),
 }
 """Names that are values of an option, beside others."""
 

@@ -1,0 +1,1 @@
+"""Logs of edits by hand outside of the program: as files."""
