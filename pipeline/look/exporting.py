@@ -11,10 +11,14 @@ from stages.exchange import ending_of, format_of
 from stages.exchange.figure import Figure
 from stages.exchange.film import Film
 from stages.exchange.writer import ShapeWriter
+from stages.look.paint import paint_of
 from stages.look.strokes import Strokes
 from stages.media import MediaInfo, check_output
 from stages.media.expected_frames import expected_frames
 from stages.media.writing.output_plan import OutputPlan
+from stages.toning.choices import Choices
+from stages.toning.tone import toned
+from warp_kernels.drawing.paint import Paint
 from warp_kernels.errors import OptionError
 
 
@@ -37,6 +41,8 @@ class Exporting:
         self._writer = ShapeWriter(plan, film)
         is_followed = not job.solve.independent
         self._smoother = Smoother(job.look.smooth if is_followed else 0.0)
+        self._tone, self._is_followed = job.look.tone, is_followed
+        self._choices = Choices.none()
         self._lays_strokes = is_followed and any(style.lays_strokes for style in film.styles)
         self._strokes: Strokes | None = None
         self._shot: int | None = None
@@ -53,15 +59,25 @@ class Exporting:
 
     def _write(self, solved: Solved) -> None:
         snapshot = solved.snapshot
-        if self._lays_strokes:
-            known = self._strokes if solved.shot == self._shot else None
-            mesh = snapshot.mesh
-            self._strokes = Strokes.begin(mesh) if known is None else known.followed_by(mesh)
-        self._shot = solved.shot
+        paint = self._painted(solved)
         if solved.is_shown:
             time = snapshot.pts * snapshot.time_base - self._start_time
-            lay = None if self._strokes is None else self._strokes.lay
-            self._writer.write(Figure(snapshot, solved.shot, time, lay))
+            self._writer.write(Figure(snapshot, solved.shot, time, paint))
+
+    def _painted(self, solved: Solved) -> Paint:
+        """What styles see of a frame: strokes and colours go on from the one before."""
+        mesh, begins = solved.snapshot.mesh, solved.shot != self._shot or not self._is_followed
+        self._shot = solved.shot
+        if self._lays_strokes:
+            known = None if begins else self._strokes
+            self._strokes = Strokes.begin(mesh) if known is None else known.followed_by(mesh)
+        lay = None if self._strokes is None else self._strokes.lay
+        paint, palette = paint_of(solved.snapshot, None, lay), self._tone.palette
+        if palette is not None and palette.is_nearest:
+            known_colors = Choices.none() if begins else self._choices
+            lab = self._tone.graded(paint.colors)
+            self._choices = known_colors.followed_by(paint.ids, lab, palette)
+        return toned(paint, self._tone, self._choices)
 
     def __enter__(self) -> "Exporting":
         return self

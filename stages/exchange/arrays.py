@@ -1,7 +1,7 @@
 """NumPy: all that is known of every frame, as arrays that a notebook reads in one line."""
 
 from pathlib import Path
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -48,14 +48,14 @@ class Arrays(Format):
             name: np.cumsum([0, *(len(part) for part in self._parts[table])])
             for name, table in (("vertex_offsets", "vertices"), ("triangle_offsets", "triangles"))
         }
+        arrays: dict[str, Any] = {
+            "schema": np.int64(SCHEMA),
+            "size": np.array(self.film.size),
+            "frames": np.array(frames),
+            "times": np.array(times),
+            "shots": np.array(shots),
+            **offsets,
+            **{name: np.concatenate(parts) for name, parts in self._parts.items()},
+        }
         with path.open("wb") as file:
-            np.savez_compressed(
-                file,
-                schema=np.int64(SCHEMA),
-                size=np.array(self.film.size),
-                frames=np.array(frames),
-                times=np.array(times),
-                shots=np.array(shots),
-                **offsets,
-                **{name: np.concatenate(parts) for name, parts in self._parts.items()},
-            )
+            np.savez_compressed(file, **arrays)

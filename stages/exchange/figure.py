@@ -6,11 +6,9 @@ from functools import cached_property
 
 import numpy as np
 
-from stages.look.paint import paint_of
 from stages.mesh import Mesh
 from stages.snapshot import Snapshot
 from warp_kernels.drawing.paint import Paint
-from warp_kernels.scene.stroke_lay import Lay
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,8 +21,8 @@ class Figure:
     """Number of the frame with which its shot begins."""
     time: Fraction
     """When it is shown [s from the first frame of the source]."""
-    lay: Lay | None = None
-    """How strokes lie, if they go on from the frame before."""
+    paint: Paint
+    """Shapes and colours as styles see them: toned, with strokes that go on."""
 
     @property
     def index(self) -> int:
@@ -35,11 +33,6 @@ class Figure:
     def mesh(self) -> Mesh:
         """The triangles."""
         return self.snapshot.mesh
-
-    @cached_property
-    def paint(self) -> Paint:
-        """Their shapes and colours as styles see them."""
-        return paint_of(self.snapshot, None, self.lay)
 
     @cached_property
     def colors(self) -> np.ndarray:

@@ -36,5 +36,7 @@ class Film:
     @property
     def scale(self) -> tuple[float, float]:
         """Size of the output relative to the source, across and down."""
-        across, down = (drawn / side for drawn, side in zip(self.framing.picture, self.size))
+        across, down = (
+            drawn / side for drawn, side in zip(self.framing.picture, self.size, strict=True)
+        )
         return across, down

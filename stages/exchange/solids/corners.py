@@ -6,7 +6,6 @@ import numpy as np
 
 from stages.exchange.figure import Figure
 from stages.exchange.film import Film
-from stages.snapshot import colors_at
 from warp_kernels.errors import OptionError
 
 HELD = ("flat", "gradient")
@@ -38,13 +37,11 @@ def corners_of(figure: Figure, film: Film) -> Corners:
 
 def corner_colors(figure: Figure, film: Film) -> np.ndarray:
     """Colours at the corners, in the order of the mesh [code values], [T, 3, 3] float32."""
-    paint, snapshot = figure.paint, figure.snapshot
+    paint = figure.paint
     if film.styles[-1].degree == 0:
         return np.repeat(paint.colors[:, None], 3, axis=1).astype(np.float32)
-    count = len(paint.colors)
-    points = figure.mesh.corners.reshape(-1, 2)
-    each = np.repeat(snapshot.coefficients, 3, axis=0)
-    found = colors_at(snapshot.model, each, points).reshape(count, 3, 3)
+    away = paint.corners - paint.corners.mean(axis=1, keepdims=True)
+    found = paint.colors[:, None] + np.einsum("tcd,tdk->tck", away, paint.gradients)
     limits = paint.limits[:, :, None]
     return np.clip(found, limits[:, 0], limits[:, 1]).astype(np.float32)
 

@@ -14,7 +14,7 @@ from stages.exchange.svg.text import hexes
 from warp_kernels.errors import OptionError
 from warp_kernels.styles import STYLES
 
-SPACES = (
+NAMESPACES = (
     'xmlns="http://www.w3.org/2000/svg" '
     'xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape"'
 )
@@ -63,7 +63,9 @@ def names_of(film: Film) -> list[str]:
     """A name for each layer: that of its style, and how often it was there already."""
     styles = [STYLES.name_of(type(style)) for style in film.styles]
     again = [styles[:number].count(name) for number, name in enumerate(styles)]
-    return [f"{name}{times + 1}" if times else name for name, times in zip(styles, again)]
+    return [
+        f"{name}{times + 1}" if times else name for name, times in zip(styles, again, strict=True)
+    ]
 
 
 def _document(film: Film, figure: Figure, layers: list[Layer]) -> list[str]:
@@ -72,8 +74,7 @@ def _document(film: Film, figure: Figure, layers: list[Layer]) -> list[str]:
     box = _view_box(film)
     lines = [
         '<?xml version="1.0" encoding="UTF-8"?>',
-        f'<svg {SPACES} width="{width}" height="{height}" viewBox="{box}"'
-        f"{_aspect(film)}>",
+        f'<svg {NAMESPACES} width="{width}" height="{height}" viewBox="{box}"{_aspect(film)}>',
         f"<title>{escape(film.name)}, frame {figure.index}</title>",
     ]
     definitions = [line for layer in layers for line in layer.definitions]

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from stages.exchange.svg.outlines import Outlines, outlines_of
+from stages.exchange.svg.outlines import Trapped, outlines_of
 from stages.mesh import Mesh, next_corner
 
 
@@ -14,7 +14,7 @@ from stages.mesh import Mesh, next_corner
 class Merged:
     """Shapes of one or more triangles; a shape with holes has several lines."""
 
-    outlines: Outlines
+    outlines: Trapped
     """All lines, shape by shape."""
     spans: list[tuple[int, int]]
     """Begin and end of each shape's lines, [S]."""
@@ -65,17 +65,18 @@ def _loops(mesh: Mesh, is_border: np.ndarray, own: np.ndarray) -> tuple[np.ndarr
         is_border: Which half-edges part two shapes, [3T] bool.
         own: The shape of each, [3T].
     """
-    following = next_corner(np.arange(len(own)))
+    starts = np.flatnonzero(is_border)
+    following = next_corner(starts)
     while True:  # on around the vertex, through the shape, up to its next border
         inside = ~is_border[following]
         if not inside.any():
             break
         following[inside] = next_corner(mesh.twins[following[inside]])
-    ahead = following.tolist()
-    starts = np.flatnonzero(is_border)
+    ahead = dict(zip(starts.tolist(), following.tolist(), strict=True))
     starts = starts[np.argsort(own[starts], kind="stable")].tolist()
     seen = (~is_border).tolist()
-    loops, counts = [], []
+    loops: list[int] = []
+    counts: list[int] = []
     for start in starts:
         place, before = start, len(loops)
         while not seen[place]:

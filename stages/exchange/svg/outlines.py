@@ -1,4 +1,4 @@
-"""Outlines of shapes that are drawn one over the other and show no seam between them.
+"""Trapped of shapes that are drawn one over the other and show no seam between them.
 
 Renderers smooth the border of every path on its own. Where two paths meet, each covers a part of
 the pixel, and together they leave some of it open: what lies below shines through as a hairline. So
@@ -20,7 +20,7 @@ STRIP = 1.5
 
 
 @dataclass(frozen=True, eq=False)
-class Outlines:
+class Trapped:
     """Closed lines, one after the other."""
 
     points: np.ndarray
@@ -29,10 +29,8 @@ class Outlines:
     """Corners of every line, [L]."""
 
 
-def outlines_of(
-    mesh: Mesh, loops: np.ndarray, counts: np.ndarray, shapes: np.ndarray
-) -> Outlines:
-    """Outlines that go on below the shapes that are drawn later: those with a higher number.
+def outlines_of(mesh: Mesh, loops: np.ndarray, counts: np.ndarray, shapes: np.ndarray) -> Trapped:
+    """Trapped that go on below the shapes that are drawn later: those with a higher number.
 
     Args:
         mesh: The triangles.
@@ -47,11 +45,11 @@ def outlines_of(
     corners = _strips(mesh, loops, np.where(is_under, entered, 0), owners, shapes)
     is_kept = np.stack([np.ones_like(is_under), is_under, is_under], axis=1)
     sizes = np.bincount(line, weights=is_kept.sum(axis=1), minlength=len(counts))
-    return Outlines(corners[is_kept], sizes.astype(np.int64))
+    return Trapped(corners[is_kept], sizes.astype(np.int64))
 
 
-def triangle_outlines(mesh: Mesh) -> Outlines:
-    """Outlines of all triangles, each drawn in its turn.
+def triangle_outlines(mesh: Mesh) -> Trapped:
+    """Trapped of all triangles, each drawn in its turn.
 
     Args:
         mesh: The triangles.

@@ -37,9 +37,7 @@ def shrunk(style: Style, figure: Figure, film: Film, name: str) -> Layer:
     return Layer(shown, [])
 
 
-def _round(
-    inner: np.ndarray, corners: np.ndarray, around: np.ndarray, precision: int
-) -> list[str]:
+def _round(inner: np.ndarray, corners: np.ndarray, around: np.ndarray, precision: int) -> list[str]:
     """Path data of all that is as near to inner triangles.
 
     Args:
