@@ -32,7 +32,7 @@ from stages.flows.passage import Passage
 from stages.flows.view import View
 from stages.frame import Frame
 from stages.layouts.importance import Importance
-from stages.metrics import SourceMotion
+from stages.metrics.motion import SourceMotion
 from stages.metrics.warp import warped
 from stages.motion.advect import advect
 from stages.render import Renderer

@@ -194,6 +194,19 @@ def run_timeline(arguments: argparse.Namespace) -> None:
     print(check_timeline(arguments))
 
 
+def run_listen(arguments: argparse.Namespace) -> None:
+    """Print what is heard in a sound, and write it.
+
+    Args:
+        arguments: What the user gave.
+    """
+    from pipeline.commands.hearing.listen import listen_to
+
+    told = listen_to(arguments)
+    if told:
+        print(told)
+
+
 def run_completion(arguments: argparse.Namespace) -> None:
     """Print the script by which a shell completes the command line.
 
@@ -203,11 +216,12 @@ def run_completion(arguments: argparse.Namespace) -> None:
     from pipeline.commands.completion import SHELLS
     from pipeline.commands.completion.words import words_of
     from pipeline.timeline.timeline import shipped_timelines
+    from stages.moves import MOVES
     from warp_kernels.styles import STYLES
 
     known = build_parser().commands()
     shipped = tuple(shipped_timelines())
-    listed = {"help": tuple(known), "styles": tuple(STYLES), "timeline": shipped}
+    listed = {"help": tuple(known), "styles": (*STYLES, *MOVES), "timeline": shipped}
     print(SHELLS[arguments.shell](words_of(known, listed)), end="")
 
 
@@ -244,6 +258,7 @@ COMMANDS: dict[str, Command] = {
     "measure": run_measure,
     "styles": run_styles,
     "timeline": run_timeline,
+    "listen": run_listen,
     "completion": run_completion,
     "help": run_help,
 }

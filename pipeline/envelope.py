@@ -9,12 +9,13 @@ more is let go: pictures and motion, once a frame is solved, would fill memory w
 wait for each other to be smoothed.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import Enum, auto
 
 import numpy as np
 
 from stages.flows.passage import Passage
+from stages.flows.view import View
 from stages.frame import Frame
 from stages.snapshot import Snapshot
 
@@ -44,6 +45,8 @@ class InShot(Envelope):
 
     frame: Frame
     """The frame."""
+    view: View | None = field(default=None, kw_only=True)
+    """Its picture as motion is looked for in it, if that was made."""
 
     @property
     def opens_shot(self) -> bool:

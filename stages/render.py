@@ -13,6 +13,7 @@ from stages.toning.choices import Choices
 from stages.toning.tone import Tone, toned
 from warp_kernels.device.device import Device
 from warp_kernels.drawing.canvas import Canvas
+from warp_kernels.drawing.moved import Moved
 from warp_kernels.errors import OptionError
 from warp_kernels.limits import MAX_SIDE
 from warp_kernels.scene.stroke_lay import Lay
@@ -30,6 +31,7 @@ class Renderer:
         masked: Styles over these, each inside of a mask, bottom to top.
         followed: Numbers of the masked styles that are drawn on the triangles of a followed
             region instead.
+        moves: Whether triangles are drawn elsewhere than they lie.
 
     Raises:
         OptionError: If the output is too large or has no pixel.
@@ -44,13 +46,14 @@ class Renderer:
         styles: tuple[Style, ...],
         masked: tuple[Style, ...] = (),
         followed: tuple[int, ...] = (),
+        moves: bool = False,
     ) -> None:
         if not 1 <= min(output) <= max(output) <= MAX_SIDE:
             raise OptionError(
                 f"an output of {output[0]}x{output[1]}: sides must lie between 1 and {MAX_SIDE} px"
             )
         textures = [style.texture(read_gray) for style in (*styles, *masked)]
-        self._canvas = Canvas(device, picture, output, styles, masked, textures, followed)
+        self._canvas = Canvas(device, picture, output, styles, masked, textures, followed, moves)
 
     @property
     def is_transparent(self) -> bool:
@@ -77,6 +80,8 @@ class Renderer:
         columns: Sequence[int] | None = None,
         tone: Tone | None = None,
         choices: Choices | None = None,
+        moved: Moved | None = None,
+        ground: np.ndarray | None = None,
     ) -> np.ndarray:
         """Draw a snapshot.
 
@@ -94,6 +99,9 @@ class Renderer:
             columns: Which of the followed regions it draws; None for all.
             tone: What is done to the colours of triangles; None for nothing.
             choices: Which colours of its palette they have taken; None for the nearest.
+            moved: Where triangles are drawn; needed if they move.
+            ground: What is seen behind them [code values], [rows, columns, 3] uint8; needed if
+                there is a style that stays.
 
         Returns:
             Code values, [rows, columns, 3] uint8, or [rows, columns, 4] with straight alpha if no
@@ -114,4 +122,6 @@ class Renderer:
             layers=layers,
             source=source,
             masks=masks,
+            moved=moved,
+            ground=ground,
         )

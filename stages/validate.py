@@ -3,8 +3,6 @@
 from collections.abc import Iterator
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from stages.mesh import Mesh, previous_corner
 from stages.snapshot import Snapshot
@@ -161,6 +159,10 @@ def _edges(mesh: Mesh) -> Iterator[str]:
 
 
 def _fans(mesh: Mesh) -> Iterator[str]:
+    # it takes a quarter of a second to import, and of a conversion only what goes on needs it
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
     count = 3 * mesh.triangle_count
     corners = np.arange(count, dtype=np.int32)
     around = mesh.twins[previous_corner(corners)]

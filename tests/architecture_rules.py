@@ -19,11 +19,13 @@ LEVELS = {"warp_kernels": 0, "stages": 1, "pipeline": 2, "trimotion": 3}
 IMPORT_HOMES = {
     "warp": ("warp_kernels/",),
     "scipy": ("stages/", "pipeline/"),
-    # in the focus it runs the network that finds faces, and scales pictures and maps for it
+    # in the focus it runs the network that finds faces, and scales pictures and maps for it; in
+    # media it interleaves planes of colour
     "cv2": (
         "stages/flows",
         "stages/focus",
         "stages/layouts",
+        "stages/media/color/yuv",
         "stages/metrics",
         "stages/look/sheet",
         "stages/spaces",

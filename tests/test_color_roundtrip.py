@@ -6,9 +6,12 @@ import av
 import media_samples as samples
 import numpy as np
 import pytest
+from av.video.frame import VideoFrame
+from av.video.reformatter import VideoReformatter
 
 from stages.media import EncodeOptions, open_decoder, open_encoder, probe
 from stages.media.color.hdr import tone_map
+from stages.media.color.yuv import FLAGS, RgbReader, YuvWriter, read_color
 
 SD, HD = (320, 160), (1280, 320)
 
@@ -130,3 +133,34 @@ def test_pq_video_is_mapped_and_noted(tmp_path: Path) -> None:
         pixel = next(decoder).pixels[16, 32].astype(int)
     assert pixel.min() > 170
     assert np.ptp(pixel) <= 2
+
+
+@pytest.mark.parametrize("stored", ["yuv420p", "yuv422p10le", "yuvj444p", "nv12", "gray"])
+@pytest.mark.parametrize("size", [(64, 48), (34, 18)])
+def test_planes_have_the_values_of_packed_pixels(stored: str, size: tuple[int, int]) -> None:
+    """What goes through planes because that is faster is equal to the bit, both ways."""
+    width, height = size
+    rng = np.random.default_rng(width)
+    packed = VideoFrame.from_ndarray(rng.integers(0, 256, (height, width, 3), np.uint8), "rgb24")
+    frame = VideoReformatter().reformat(packed, format=stored)
+    color = read_color(frame)
+    read = RgbReader().read8(frame, color, size)
+    ranges = {"src_color_range": 2 if color.full_range else 1, "dst_color_range": 2}
+    if stored != "gray":  # whose range is stretched afterwards
+        expected = VideoReformatter().reformat(
+            frame, format="rgb24", src_colorspace=color.colorspace, interpolation=FLAGS, **ranges
+        )
+        assert np.array_equal(read, expected.to_ndarray())
+    if stored not in ("nv12", "gray"):
+        is_jpeg = stored.startswith("yuvj")
+        direct = VideoReformatter().reformat(
+            VideoFrame.from_ndarray(read, "rgb24"),
+            format=stored,
+            dst_colorspace=5 if is_jpeg else 1,
+            src_color_range=2,
+            dst_color_range=2 if is_jpeg else 1,
+            interpolation=FLAGS,
+        )
+        writer = YuvWriter(stored)
+        for _ in range(2):  # the second time in the same memory
+            assert np.array_equal(writer.write(read).to_ndarray(), direct.to_ndarray())

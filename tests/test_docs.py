@@ -146,8 +146,9 @@ def test_commands_write_into_out_and_can_be_run_again() -> None:
 
 
 def test_styles_are_told_of_as_the_registry_has_them() -> None:
-    text = style_tables.PAGE.read_text("utf-8")
-    assert style_tables.renewed(text) == text, "run benchmarks/style_tables.py --write"
+    for page, moves in ((style_tables.PAGE, False), (style_tables.MOVES_PAGE, True)):
+        text = page.read_text("utf-8")
+        assert style_tables.renewed(text, moves) == text, "run benchmarks/style_tables.py --write"
 
 
 def assert_can_be_made(file: str) -> None:

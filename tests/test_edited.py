@@ -72,6 +72,22 @@ def test_what_was_made_lives_through_its_shot(whole: Path) -> None:
         assert len(track.snapshot(CUT + 3).locks.vertices) == 1
 
 
+def test_two_edited_frames_meet_half_way(clip: Path, tmp_path: Path) -> None:
+    log = EditLog((Insert(1, (30.0, 32.0), 12.0, 5), Insert(5, (66.0, 32.0), 12.0, 5)))
+    track = tmp_path / "two.mtrk"
+    solve_to(track, clip, "0-5", edits=log)
+    with TrackReader(track) as reader:
+        found = [reader.snapshot(frame) for frame in range(6)]
+    for snapshot in found:
+        assert_valid(snapshot.mesh)
+        assert abs(snapshot.mesh.triangle_count - 40) <= 22
+    second = set(found[5].locks.vertices) - set(found[1].locks.vertices)
+    assert len(second) == 5
+    assert second <= set(found[4].locks.vertices)
+    assert not second & set(found[1].mesh.vertex_ids.tolist())
+    assert len(found[0].locks.vertices) == 5
+
+
 def test_no_number_is_given_twice(whole: Path) -> None:
     """A vertex lives in frames that follow each other, also where time was run through twice."""
     lives: dict[int, list[int]] = {}

@@ -53,7 +53,7 @@ class Cache:
 
         return Named(module=Named(get_module_identifier=identify, name=name))
 
-    def load(self, module: Any, device: Any) -> None:
+    def load(self, module: Any, device: Any, block_dim: int) -> None:
         """Compile."""
         self.events.append(("compiled", module.name))
         (self.folder / module.name).mkdir()
@@ -99,7 +99,7 @@ def test_a_failure_ends_the_others(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     """What fails is told by the call that needed it."""
     cache = Cache(tmp_path, monkeypatch)
 
-    def fail(module: Any, device: Any) -> None:
+    def fail(module: Any, device: Any, block_dim: int) -> None:
         raise OSError("full")
 
     # real need: no kernel of the program fails to compile

@@ -2,8 +2,10 @@
 
 import numpy as np
 import pytest
+from scipy.spatial import Delaunay, cKDTree
 
 from stages.layouts import LAYOUTS
+from stages.layouts.delaunay import apart_from, delaunay_mesh, earlier_ones
 from stages.layouts.grid import Grid
 from stages.layouts.importance import Importance
 from stages.mesh import Mesh
@@ -132,3 +134,56 @@ def test_importance_refuses_a_map_that_is_none(value: float) -> None:
     layout = Importance(importance_map=np.full((4, 4), value))
     with pytest.raises(OptionError, match="importance map"):
         layout.build(picture(20, 20), 50, np.random.default_rng(0))
+
+
+@pytest.mark.parametrize("inner", [0, 1, 2, 60, 400])
+@pytest.mark.parametrize("along", [0, 1, 7])
+def test_triangles_are_those_of_scipy(along: int, inner: int) -> None:
+    """Any number of vertices inside and along the border; each of them is used."""
+    rng = np.random.default_rng([along, inner])
+    sides = [
+        np.array([[0, 0], [90, 0], [0, 60], [90, 60]]),
+        np.stack([rng.random(along) * 90, np.zeros(along)], axis=1),
+        np.stack([np.full(2 * along, 90), rng.random(2 * along) * 60], axis=1),
+    ]
+    border, inside = np.concatenate(sides), 1 + rng.random((inner, 2)) * (88, 58)
+    mesh = delaunay_mesh(border, inside, 90, 60)
+    assert_valid(mesh)
+    assert np.array_equal(mesh.vertices, np.concatenate([border, inside]))
+    if inner:  # without, four vertices lie on a circle
+        expected = Delaunay(mesh.vertices).simplices
+        flat = {tuple(sorted(row)) for row in expected.tolist() if _area(mesh.vertices[row]) == 0}
+        assert _sets(mesh.triangles) == _sets(expected) - flat
+
+
+def test_a_vertex_between_two_others_is_left_out() -> None:
+    """A triangle without area is none."""
+    border = np.array([[0, 0], [8, 0], [0, 8], [8, 8]], dtype=np.float64)
+    mesh = delaunay_mesh(border, np.array([[4.0, 4.0]]), 8, 8)
+    assert_valid(mesh)
+    assert mesh.vertex_count == 4
+
+
+@pytest.mark.parametrize("spacing", [0.01, 3.0, 500.0])
+def test_distances_are_those_of_scipy(spacing: float) -> None:
+    """Who is too near to others, and of two close ones the later."""
+    rng = np.random.default_rng(4)
+    points, others = rng.random((2, 200, 2)) * 50
+    points[5:9] = points[4]
+    known = cKDTree(others).query(points)[0] >= spacing
+    assert np.array_equal(apart_from(points, others, spacing), known)
+    near = cKDTree(points).query_pairs(spacing, output_type="ndarray")
+    expected = np.ones(len(points), dtype=bool)
+    expected[near.max(axis=1)] = False
+    assert np.array_equal(earlier_ones(points, spacing), expected)
+
+
+def _area(corners: np.ndarray) -> float:
+    """Twice the area of a triangle [px^2]."""
+    (a, b), (c, d) = corners[1:] - corners[0]
+    return float(a * d - b * c)
+
+
+def _sets(triangles: np.ndarray) -> set[tuple[int, ...]]:
+    """Triangles whatever corner comes first."""
+    return {tuple(sorted(row)) for row in triangles.tolist()}

@@ -12,6 +12,7 @@ from pipeline.cli import main
 from pipeline.commands.style_sheet import COLUMNS, OVER, WIDTH, draw_sheet
 from pipeline.options.members import parse_member
 from stages.look.sheet import CAPTION, GAP, sheet_of
+from stages.moves import MOVES
 from tests.golden_images import write_png
 from tests.kernel_samples import waves
 from warp_kernels.styles import STYLES
@@ -23,7 +24,8 @@ def test_list_holds_every_style_and_parameter(capsys) -> None:
     text = capsys.readouterr().out
     assert main(["styles", "--json"]) == 0
     facts = json.loads(capsys.readouterr().out)
-    assert list(facts) == list(STYLES)
+    assert list(facts) == [*STYLES, "--move"]
+    assert list(facts["--move"]) == list(MOVES)
     for name, style in STYLES.items():
         assert f"\n{name}  " in text
         assert facts[name]["summary"]

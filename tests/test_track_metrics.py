@@ -27,8 +27,11 @@ from stages.edits import (
 from stages.flows.field import FlowField
 from stages.media import FrameRange
 from stages.mesh import Mesh, areas_of
-from stages.metrics import SourceMotion, drift, jitter, mesh_changes, pop_energy
+from stages.metrics.drift import drift, jitter
 from stages.metrics.locate import locate
+from stages.metrics.mesh_changes import mesh_changes
+from stages.metrics.motion import SourceMotion
+from stages.metrics.pop_energy import pop_energy
 from stages.snapshot import Snapshot
 from tests import media_samples as samples
 from tests.jobs import job_of

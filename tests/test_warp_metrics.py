@@ -16,8 +16,10 @@ from pipeline.compare.coherence import CoherenceMeter
 from pipeline.compare.measure import measure
 from pipeline.compare.pairs import Matched
 from stages.flows.field import FlowField
-from stages.metrics import SourceMotion, motion_difference, warp_error
+from stages.metrics.motion import SourceMotion
+from stages.metrics.motion_difference import motion_difference
 from stages.metrics.visible import visible
+from stages.metrics.warp_error import warp_error
 from tests.kernel_samples import frame_of
 
 FRAME_KEYS = {

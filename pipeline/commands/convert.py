@@ -5,6 +5,8 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from pipeline.commands.importing import importing
+
 if TYPE_CHECKING:
     from pipeline.loop.result import Animated
     from pipeline.options.job import Job
@@ -45,7 +47,8 @@ def check_options(arguments: argparse.Namespace) -> None:
 def _animate(arguments: argparse.Namespace) -> "Animated":
     job = _job(arguments)
     with progress_for(arguments) as progress:
-        from pipeline.loop.animate import animate
+        with importing():
+            from pipeline.loop.animate import animate
 
         return _tell(progress, animate(job, progress), job.output.path)
 
@@ -55,7 +58,8 @@ def _solve(arguments: argparse.Namespace) -> "Animated":
 
     job = with_course(_solve_job(arguments))
     with progress_for(arguments) as progress:
-        from pipeline.loop.animate import solve
+        with importing():
+            from pipeline.loop.animate import solve
 
         result = solve(job.solve, job.output, job.run, progress)
         return _tell(progress, result, job.output.track)
@@ -64,9 +68,10 @@ def _solve(arguments: argparse.Namespace) -> "Animated":
 def _render(arguments: argparse.Namespace) -> "Animated":
     source = None if arguments.source is None else Path(arguments.source)
     wanted = _wanted(arguments)
-    from pipeline.look.render_job import render_job
-    from pipeline.loop.render import render
-    from pipeline.track import TrackReader
+    with importing():
+        from pipeline.look.render_job import render_job
+        from pipeline.loop.render import render
+        from pipeline.track import TrackReader
 
     with TrackReader(Path(arguments.track)) as track, progress_for(arguments) as progress:
         made = render_job(track, *wanted, source)

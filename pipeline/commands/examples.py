@@ -49,6 +49,11 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
         "timeline pulse --check clip.mp4 -o strip.png",
         "timeline pulse > mine.toml",
     ),
+    "listen": (
+        "listen song.flac -o song.beats.json --plot song.png",
+        "listen clip.mp4 --labels beats.txt --bpm 120",
+        "listen song.flac --beats beats.txt -o song.beats.json --overwrite",
+    ),
     "completion": (
         "completion bash > ~/.local/share/bash-completion/completions/trimotion",
         "completion zsh > ~/.zfunc/_trimotion",

@@ -5,6 +5,7 @@ import re
 from typing import Any, NoReturn
 
 from pipeline.commands.examples import ABOUT_ALL, EXAMPLES, shown
+from pipeline.commands.hearing.grammar import LISTEN_ABOUT, LISTEN_USAGE, add_listen_options
 from pipeline.commands.style_list import registry_help
 from pipeline.commands.unknown import no_command, unknown_arguments
 from pipeline.options.command_line import add_job_options
@@ -23,8 +24,9 @@ commands:
   join A.mtrk B.mtrk ... -o OUT.mtrk   put the tracks of ranges together
   info FILE                  what a file is: a source or a mesh track
   measure SOURCE OUTPUT      how close an output is to its source, and how coherent
-  styles [NAME]              all styles and their parameters, or one; --sheet draws them
+  styles [NAME]              styles and moves with their parameters; --sheet draws them
   timeline SHOW.toml|NAME --check CLIP   what a timeline does when, without solving
+  listen SONG|CLIP -o SONG.beats.json   beats, bars, onsets and strengths of a sound
   completion bash|zsh|fish   a script by which a shell completes all of this
   help [COMMAND]             this text, or the options of a command
 
@@ -33,7 +35,7 @@ trimotion COMMAND --help tells the options of a command, too.
 """
 
 WHERE_PARAMETERS = """\
-trimotion styles lists every style with its parameters, trimotion styles NAME those of one.
+trimotion styles lists every style and move with its parameters, trimotion styles NAME those of one.
 
 """
 
@@ -107,6 +109,7 @@ def build_parser() -> OneLineParser:
     _add_measure(commands)
     _add_styles(commands)
     _add_timeline(commands)
+    _add_listen(commands)
     _add_completion(commands)
     _add_help(commands)
     return parser
@@ -333,6 +336,11 @@ def _add_timeline(commands: Any) -> None:
     parser.add_argument("--overwrite", action="store_true", help="replace an existing picture")
     parser.add_argument("--json", action="store_true", help="print JSON")
     add_job_options(parser, "timeline")
+
+
+def _add_listen(commands: Any) -> None:
+    parser = _command(commands, "listen", LISTEN_ABOUT, LISTEN_USAGE)
+    add_listen_options(parser)
 
 
 def _add_completion(commands: Any) -> None:

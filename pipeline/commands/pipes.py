@@ -15,7 +15,7 @@ from pipeline.commands.inputs import PIPE, inputs_of, is_pipe
 from pipeline.options.output_name import is_still
 from warp_kernels.errors import MediaError, OptionError, TrimotionError
 
-FORMATS = {"solve": ".mtrk", "join": ".mtrk", "preview": ".png"}
+FORMATS = {"solve": ".mtrk", "join": ".mtrk", "preview": ".png", "listen": ".json"}
 """Ending of an output whose name does not say, by the command; PNG or Matroska for the others."""
 _MADE = "standard output"
 

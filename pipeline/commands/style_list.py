@@ -10,6 +10,8 @@ from typing import Any
 from pipeline.options.command_line import job_options
 from pipeline.options.members import parameters
 from pipeline.options.nearest import nearest
+from pipeline.options.values import kind_of
+from stages.moves import MOVES
 from warp_kernels.errors import OptionError
 from warp_kernels.registry import Registry
 from warp_kernels.styles import STYLES, Style
@@ -19,32 +21,36 @@ SHARED = ("opacity", "blend")
 
 
 def list_styles(only: str | None = None, *, as_json: bool) -> str:
-    """What `--style` takes: every style with its parameters, defaults, units and ranges.
+    """What `--style` and `--move` take: every member with its parameters, defaults and ranges.
 
-    What installed packages add to other options follows the styles; a member that cannot be used is
-    told with the reason.
+    What installed packages add to other options follows; a member that cannot be used is told with
+    the reason.
 
     Args:
-        only: The style that is told of; None for all.
+        only: The style or the move that is told of; None for all.
         as_json: Whether to give JSON rather than lines.
 
     Raises:
         OptionError: If there is no such style, or the one that is asked for cannot be used.
     """
     if only is not None:
-        _check(only, STYLES)
-        STYLES[only]
-    wanted = [name for name in STYLES if only in (None, name)]
+        _check(only, [*STYLES, *MOVES])
+        family: Registry[Any] = STYLES if only in STYLES else MOVES
+        family[only]
+        if as_json:
+            return json.dumps({only: _member_facts(family, only)}, indent=2)
+        return "\n".join(_member(family, only))
     if as_json:
-        found = {name: _member_facts(STYLES, name) for name in wanted}
-        return json.dumps(found | ({} if only is not None else _added_facts()), indent=2)
-    if only is not None:
-        return "\n".join(_member(STYLES, only))
+        found: dict[str, object] = {name: _member_facts(STYLES, name) for name in STYLES}
+        return json.dumps(found | _other_facts(), indent=2)
     lines = ["--style NAME, or NAME:PARAMETER=VALUE,...; repeat it to lay one over the other", ""]
-    for name in wanted:
+    for name in STYLES:
         lines += _member(STYLES, name, without=SHARED)
     lines.append("every style")
     lines += _rows(p for p in parameters(Style) if p.name in SHARED)
+    lines += ["", "--move NAME, or NAME:PARAMETER=VALUE,...; repeat it to add one to the other", ""]
+    for name in MOVES:
+        lines += _member(MOVES, name)
     for flag, registry in _extended():
         lines += ["", f"{flag}, from installed packages"]
         for name in registry.added:
@@ -53,10 +59,10 @@ def list_styles(only: str | None = None, *, as_json: bool) -> str:
 
 
 def _extended() -> Iterator[tuple[str, Registry[Any]]]:
-    """Options besides `--style` to which installed packages add members."""
+    """Options besides `--style` and `--move` to which installed packages add members."""
     for option in job_options():
         registry = option.registry
-        if registry is not None and registry is not STYLES and registry.added:
+        if registry is not None and registry not in (STYLES, MOVES) and registry.added:
             yield f"--{option.flag}", registry
 
 
@@ -82,12 +88,14 @@ def _member(registry: Registry[Any], name: str, without: tuple[str, ...] = ()) -
     return [f"{name}  {_summary(cls)}{origin}", *rows]
 
 
-def _added_facts() -> dict[str, object]:
-    """What packages add to other options, by flag; no style has such a name."""
-    return {
+def _other_facts() -> dict[str, object]:
+    """Moves, and what packages add to other options, by flag; no style has such a name."""
+    moves = {name: _member_facts(MOVES, name) for name in MOVES}
+    added: dict[str, object] = {
         flag: {name: _member_facts(registry, name) for name in registry.added}
         for flag, registry in _extended()
     }
+    return {"--move": moves} | added
 
 
 def _member_facts(registry: Registry[Any], name: str) -> dict[str, object]:
@@ -122,15 +130,23 @@ def _rows(parameters: Iterator[Field[Any]]) -> list[str]:
 
 def _given(parameter: Field[Any]) -> str:
     """A parameter with its default, as it is written."""
-    default = parameter.default
-    shown = f"{default:g}" if isinstance(default, float) else str(default)
-    return f"{parameter.name}={'FILE' if default in (None, MISSING) else shown}"
+    return f"{parameter.name}{_shown(parameter)}"
 
 
 def _written(name: str, cls: Any) -> str:
     """A member with its parameters and their defaults, as it would be given."""
-    values = (f"{p.name}={'FILE' if p.default is None else p.default}" for p in parameters(cls))
+    values = (f"{p.name}{_shown(p)}" for p in parameters(cls))
     return ":".join(filter(None, [name, ",".join(values)]))
+
+
+def _shown(parameter: Field[Any]) -> str:
+    """What follows the name of a parameter that is left as it is."""
+    default = parameter.default
+    if default is None and kind_of(parameter) in ("float", "int"):
+        return ""
+    if default in (None, MISSING):
+        return "=FILE"
+    return f"={default:g}" if isinstance(default, float) else f"={default}"
 
 
 def _told(parameter: Field[Any]) -> str:

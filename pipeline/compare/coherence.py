@@ -9,7 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from pipeline.compare.pairs import Matched
-from stages.metrics import SourceMotion, motion_difference, warp_error
+from stages.metrics.motion import SourceMotion
+from stages.metrics.motion_difference import motion_difference
+from stages.metrics.warp_error import warp_error
 
 _Pictures = tuple[np.ndarray, np.ndarray]
 

@@ -11,6 +11,7 @@ from pipeline.compare.track_measures import TrackMeter
 from pipeline.loop.shots import detected_shots
 from pipeline.progress import Progress
 from pipeline.track import TrackReader, refuse_track
+from stages.flows.view import View
 from stages.media import FrameRange, open_decoder
 
 
@@ -94,5 +95,5 @@ def _with_shots(
 ) -> Iterator[tuple[Matched, int]]:
     """Pairs with the number of the frame with which their shot begins."""
     if meter is None:
-        return detected_shots(pairs, lambda pair: pair.frame)
+        return detected_shots(pairs, lambda pair: pair.frame, lambda pair: View(pair.frame.pixels))
     return ((pair, meter.shot_of(pair.frame.index)) for pair in pairs)

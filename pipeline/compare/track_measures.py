@@ -10,7 +10,10 @@ from pipeline.compare.coherence import mean_of
 from pipeline.compare.lifetimes import Lifetimes
 from pipeline.track import TrackReader
 from stages.media import MediaInfo
-from stages.metrics import Drift, SourceMotion, drift, jitter, mesh_changes, pop_energy
+from stages.metrics.drift import Drift, drift, jitter
+from stages.metrics.mesh_changes import mesh_changes
+from stages.metrics.motion import SourceMotion
+from stages.metrics.pop_energy import pop_energy
 from stages.snapshot import Snapshot
 from warp_kernels.errors import TrackError
 

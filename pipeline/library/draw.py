@@ -7,12 +7,13 @@ from typing import Any
 import numpy as np
 
 from pipeline.library.device import opened_device
+from pipeline.look.wardrobe import Posed, Wardrobe
 from pipeline.options.build import fill, values_of
 from pipeline.options.look import Look
 from pipeline.options.run import Run
 from stages.frame import Frame
 from stages.look.framing import framed
-from stages.render import Renderer
+from stages.moves.staged import check_moment
 from stages.snapshot import Snapshot
 from stages.triangulate import Triangulator
 from stages.triangulate_options import TriangulateOptions
@@ -21,13 +22,18 @@ from warp_kernels.errors import OptionError
 
 
 def drawn(
-    snapshot: Snapshot, frame: Frame | None, model: ColorModel, given: Mapping[str, Any]
+    snapshot: Snapshot,
+    frame: Frame | None,
+    time: float | None,
+    model: ColorModel,
+    given: Mapping[str, Any],
 ) -> np.ndarray:
     """Draw a snapshot.
 
     Args:
         snapshot: The triangles and their colours.
         frame: The picture, or None if it was not kept.
+        time: When it is shown [s from the first frame of its source], or None.
         model: The colour model that was optimised.
         given: Options of the look and the run, by field name.
 
@@ -42,6 +48,8 @@ def drawn(
     styles, fitted = look.shown_styles(model), look.fitted(model)
     size = (snapshot.mesh.width, snapshot.mesh.height)
     framing = look.framing_for(size, Fraction(1))
+    if time is None:
+        check_moment(look.moves)
     is_short = fitted.degree > snapshot.model.degree
     if frame is None and (is_short or look.needs_source):
         names = ", ".join(type(style).__name__.lower() for style in styles)
@@ -52,7 +60,8 @@ def drawn(
         if frame is not None and fitted != snapshot.model:
             options = TriangulateOptions(color=model.name)
             snapshot = Triangulator(device, size, options, fitted).fit(frame, snapshot.mesh)
-        renderer = Renderer(device, size, framing.picture, styles)
+        wardrobe = Wardrobe(device, size, framing.picture, look, model)
         source = None if frame is None else frame.pixels
-        pixels = renderer.render(snapshot, source=source, tone=look.tone)
+        view = Posed(snapshot, None, source, {}, None, None, {}, time or 0.0)
+        pixels = wardrobe.draw(look, view)
     return framed(pixels, framing, look.backdrop(model))

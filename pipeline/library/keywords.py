@@ -80,6 +80,9 @@ class SolveKeywords(AnimatorKeywords, SourceKeywords, total=False):
 
     preset: Name | None
     timeline: Name | None
+    beats: Name | None
+    audio_mode: Name
+    audio_offset: float
     edits: Any
     jobs: int
     overwrite: bool
@@ -91,7 +94,9 @@ class LookKeywords(TypedDict, total=False):
 
     styles: str | Sequence[str]
     regions: str | Sequence[str]
+    moves: str | Sequence[str]
     timeline: Name | None
+    beats: Name | None
     palette: Name | None
     grade: str | None
     size: str | tuple[int, int] | None
@@ -110,7 +115,8 @@ class OutputKeywords(TypedDict, total=False):
     pixel_format: str | None
     encoder_preset: str | None
     audio: bool
-    audio_mode: str
+    audio_mode: Name
+    audio_offset: float
     overwrite: bool
     svg_precision: int
     svg_merge: bool
@@ -132,6 +138,7 @@ class DrawKeywords(DeviceKeywords, total=False):
     """How one frame is drawn."""
 
     styles: str | Sequence[str]
+    moves: str | Sequence[str]
     palette: Name | None
     grade: str | None
     size: str | tuple[int, int] | None
@@ -168,7 +175,7 @@ def _for_pictures(option: Option) -> bool:
 
 
 DRAWN = (
-    *("styles", "palette", "grade", "output_size", "scale", "fit", "background"),
+    *("styles", "moves", "palette", "grade", "output_size", "scale", "fit", "background"),
     *("device", "threads"),
 )
 """Options that say how one frame is drawn."""

@@ -69,7 +69,7 @@ def solve(
         TrimotionError: One of its kinds; the message is one line that ends with a remedy.
     """
     # Looks, which a preset may hold, do not belong to a track.
-    fixed = {"track": file_name("output", output), "styles": (), "regions": ()}
+    fixed = {"track": file_name("output", output), "styles": (), "regions": (), "moves": ()}
     job = _job("solve", source, options, **fixed)
     with progress_for(progress) as told, explained_loss(job.run.jobs):
         from pipeline.loop.animate import solve as run

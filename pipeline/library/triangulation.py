@@ -110,6 +110,7 @@ class Triangulation:
         size: str | tuple[int, int] | None = None,
         fit: str = "contain",
         background: str | None = None,
+        moves: str | Sequence[str] = (),
         palette: str | None = None,
         grade: str | None = None,
         device: str | None = None,
@@ -124,6 +125,7 @@ class Triangulation:
             size: Width and height instead [px], or a text as on the command line: `1080x`.
             fit: How the picture gets into another shape: `contain`, `cover` or `stretch`.
             background: Colour of bars, and of what transparent styles leave open.
+            moves: How its triangles move, one or several: `explode:amount=0.3`.
             palette: Colours that those of the triangles become: `#123,#fa0,white`, a file.
             grade: Change of their colours: `exposure=0.5,saturation=0.8`.
             device: Where kernels run; if left out, where they ran before.
@@ -131,18 +133,21 @@ class Triangulation:
 
         Returns:
             Code values, [rows, columns, 3] uint8, or [rows, columns, 4] with straight alpha if
-            no style is opaque.
+            no style is opaque, or moves leave holes.
 
         Raises:
             OptionError: If a value is impossible, or a style needs the picture and it was not kept.
         """
         origin = self._origin
         options: dict[str, Any] = {"styles": styles, "scale": scale, "size": size}
-        options |= {"fit": fit, "background": background, "palette": palette, "grade": grade}
+        options |= {"fit": fit, "background": background, "moves": moves}
+        options |= {"palette": palette, "grade": grade}
         options["device"] = origin.device if device is None else device
         options["threads"] = origin.threads if threads is None else threads
         model = COLOR_MODELS[origin.color]
-        return drawn(self._snapshot, origin.frame, model, given_values("draw", options))
+        return drawn(
+            self._snapshot, origin.frame, origin.time, model, given_values("draw", options)
+        )
 
     def _repr_png_(self) -> bytes:
         """What a notebook shows."""

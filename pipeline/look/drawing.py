@@ -64,7 +64,7 @@ class Drawing:
     def notes(self) -> list[str]:
         """Choices that were made, one sentence each; complete after the block."""
         fitted = _fitted(self._framing)
-        return [*self._hidden, *fitted, *self._encoder.notes]
+        return [*self._hidden, *fitted, *self._stage.notes, *self._encoder.notes]
 
     def draw(self, solved: Solved) -> None:
         """Draw and encode a frame, or an earlier one that has been waiting for it."""
@@ -75,7 +75,7 @@ class Drawing:
         self._follow(solved)
         if solved.is_shown:
             snapshot = solved.snapshot
-            index = snapshot.frame_index
+            index, shown = snapshot.frame_index, snapshot.pts * snapshot.time_base
             looks = self._looks_at(solved)
             masks = {name: self._masks[name].at(index) for name in looks.masks}
             view = Posed(
@@ -86,6 +86,7 @@ class Drawing:
                 solved.shares,
                 self._lay,
                 self._choices,
+                float(shown - self._start_time),
             )
             pixels = self._stage.draw(looks, view)
             self._encoder.write(pixels, snapshot.pts, snapshot.time_base, snapshot.frame_index)

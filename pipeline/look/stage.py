@@ -14,7 +14,8 @@ from pipeline.timeline.staging import show_of
 from stages.look.framing import Framing, framed
 from stages.look.transitions import apart, faded, thinned, through, wiped, with_alpha
 from stages.look.veil import WAITING, Curtain
-from stages.media import MediaInfo
+from stages.media import MediaInfo, keeps_alpha
+from stages.moves.staged import check_moment
 from warp_kernels.color_model import ColorModel
 from warp_kernels.device.device import Device
 
@@ -55,6 +56,7 @@ class Stage:
         show: What is drawn when; None if nothing changes.
         frames: Numbers of the first and the last frame that are drawn, as far as is known.
         film: Those of the whole film, in the same way.
+        keeps_alpha: Whether what is written has room for transparency.
     """
 
     def __init__(
@@ -66,6 +68,7 @@ class Stage:
         show: Show | None,
         frames: tuple[int, int],
         film: tuple[int, int],
+        keeps_alpha: bool,
     ) -> None:
         self._wardrobe, self._framing, self._model, self._show = wardrobe, framing, model, show
         self._steady = Instant(Setting(0, look))
@@ -79,7 +82,13 @@ class Stage:
         # of the whole film, whatever range of it is drawn: opacity means alpha then
         for scene in [self._steady.scene] if show is None else show.foreseen(*film):
             backdrop = scene.look.backdrop(model)
-            self._is_alpha |= backdrop is None and wardrobe.is_transparent(scene.look)
+            is_open = keeps_alpha and wardrobe.has_holes(scene.look)
+            self._is_alpha |= backdrop is None and (is_open or wardrobe.is_transparent(scene.look))
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What is told of what a timeline hears, one sentence each."""
+        return () if self._show is None else self._show.notes
 
     def looks_at(self, index: int, shown: Fraction, shot: int) -> Looks:
         """What is drawn at a frame.
@@ -150,6 +159,8 @@ class Stage:
         elif pixels.shape[2] == 4 and backdrop is None:
             backdrop = BLACK
         pixels = framed(pixels, self._framing, backdrop)
+        if self._is_alpha:  # a background has filled what was open
+            pixels = with_alpha(pixels)
         return thinned(pixels, backdrop or BLACK, scene.opacity)
 
 
@@ -169,7 +180,9 @@ def open_stage(device: Device, job: Job, info: MediaInfo, framing: Framing) -> S
     look, model = job.look, job.solve.model
     wardrobe = Wardrobe(device, (info.width, info.height), framing.picture, look, model)
     show = show_of(look, model, info)
-    return Stage(wardrobe, framing, look, model, show, _frames(job, info), _film(info))
+    output = job.output
+    has_room = output.path is not None and keeps_alpha(output.path, output.encode)
+    return Stage(wardrobe, framing, look, model, show, _frames(job, info), _film(info), has_room)
 
 
 def check_stage(job: Job, info: MediaInfo) -> None:
@@ -182,9 +195,12 @@ def check_stage(job: Job, info: MediaInfo) -> None:
     Raises:
         OptionError: If they do not.
     """
-    show = show_of(job.look, job.solve.model, info)
+    show, film = show_of(job.look, job.solve.model, info), _film(info)
     if show is not None:
-        show.check(*_film(info))
+        show.check(*film)
+    if info.last_frame == info.first_frame:
+        for look in [job.look] if show is None else [one.look for one in show.foreseen(*film)]:
+            check_moment(look.moves)
 
 
 def _film(info: MediaInfo) -> tuple[int, int]:

@@ -9,15 +9,21 @@ import numpy as np
 from pipeline.options.look import Look
 from stages.look.fading import Fading
 from stages.look.veil import Curtain
+from stages.masks.region import Region
+from stages.moves.staged import moved_by
 from stages.render import Renderer
 from stages.snapshot import Snapshot
 from stages.toning.choices import Choices
+from stages.toning.tone import Tone
 from warp_kernels.color_model import ColorModel
 from warp_kernels.device.device import Device
-from warp_kernels.drawing.canvas import coats_of
+from warp_kernels.drawing.coats import coats_of
+from warp_kernels.drawing.moved import Moved
 from warp_kernels.drawing.shade import channels_of
 from warp_kernels.drawing.stack_kind import kind_of_stack
 from warp_kernels.scene.stroke_lay import Lay
+from warp_kernels.styles import Style
+from warp_kernels.styles.backcloth import Backcloth
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,6 +44,27 @@ class Posed:
     """How strokes lie."""
     choices: Mapping[int, Choices]
     """Which colours of their palettes triangles have taken, by the number of the section."""
+    time: float = 0.0
+    """When it is shown [s from the beginning of the film]."""
+
+
+@dataclass(frozen=True)
+class Stack:
+    """Styles that one renderer draws."""
+
+    styles: tuple[Style, ...]
+    """Bottom to top."""
+    regions: tuple[Region, ...] = ()
+    """Those over them, inside of masks."""
+    moves: bool = False
+    """Whether it draws triangles elsewhere than they lie."""
+
+    @property
+    def parts(self) -> tuple[tuple[Style, ...], tuple[Style, ...], tuple[int, ...], bool]:
+        """What a renderer is made of."""
+        masked = tuple(region.style for region in self.regions)
+        followed = tuple(i for i, region in enumerate(self.regions) if region.frames)
+        return self.styles, masked, followed, self.moves
 
 
 class Wardrobe:
@@ -67,7 +94,7 @@ class Wardrobe:
         self._columns = {(r.mask, r.frames): place for place, r in enumerate(look.followed)}
         self._followed = len(look.followed)
         self._renderers: dict[Any, Renderer] = {}
-        self._dressed: dict[int, Look] = {}
+        self._dressed: dict[int, Stack] = {}
 
     def curtain(self, kind: str, size: tuple[int, int]) -> Curtain:
         """What draws the masks of a kind of transition.
@@ -78,24 +105,44 @@ class Wardrobe:
         """
         return Curtain(self._device, self._picture, size, kind)
 
-    def prepare(self, look: Look) -> Renderer:
-        """The renderer for a look, with its parameters; made if there is none of its kind.
+    def prepare(self, look: Look) -> None:
+        """Make all that a look is drawn with.
 
         Args:
             look: The look; without sections of its own.
         """
-        styles = look.shown_styles(self._model)
-        masked = tuple(region.style for region in look.regions)
-        followed = tuple(i for i, region in enumerate(look.regions) if region.frames)
-        kind = kind_of_stack(styles, masked, followed)
+        for stack in (self._still(look), *self._moving(look)):
+            self._renderer(stack)
+
+    def _renderer(self, stack: Stack) -> Renderer:
+        """The renderer for a stack, with its parameters; made if there is none of its kind."""
+        kind = kind_of_stack(*stack.parts)
         found = self._renderers.get(kind)
         if found is None:
-            found = Renderer(self._device, self._picture, self._drawn, styles, masked, followed)
+            found = Renderer(self._device, self._picture, self._drawn, *stack.parts)
             self._renderers[kind] = found
-        elif self._dressed.get(id(found)) is not look:
-            found.restyle(styles, masked)
-        self._dressed[id(found)] = look
+        elif self._dressed.get(id(found)) != stack:
+            found.restyle(*stack.parts[:2])
+        self._dressed[id(found)] = stack
         return found
+
+    def _still(self, look: Look) -> Stack:
+        """What a look is where nothing moves."""
+        return Stack(look.shown_styles(self._model), look.regions)
+
+    def _moving(self, look: Look) -> tuple[Stack, ...]:
+        """What it is where triangles move: the sheet that lies under them, if any, then the rest.
+
+        What lies under a sheet is hidden.
+        """
+        if all(move.is_idle for move in look.moves):
+            return ()
+        styles = look.shown_styles(self._model)
+        sheets = [number for number, style in enumerate(styles) if style.is_sheet]
+        if not sheets:
+            return (Stack(styles, look.regions, moves=True),)
+        above = (Backcloth(), *styles[sheets[-1] + 1 :])
+        return Stack((styles[sheets[-1]],)), Stack(above, look.regions, moves=True)
 
     def is_transparent(self, look: Look) -> bool:
         """Whether what is drawn in a look has alpha; nothing is made for it.
@@ -103,9 +150,15 @@ class Wardrobe:
         Args:
             look: The look; without sections of its own.
         """
-        masked = tuple(region.style for region in look.regions)
-        followed = tuple(i for i, region in enumerate(look.regions) if region.frames)
-        return channels_of(coats_of(look.shown_styles(self._model), masked, followed)) == 4
+        return channels_of(coats_of(*self._still(look).parts)) == 4
+
+    def has_holes(self, look: Look) -> bool:
+        """Whether what is drawn in a look has holes while triangles move; nothing is made for it.
+
+        Args:
+            look: The look; without sections of its own.
+        """
+        return any(channels_of(coats_of(*one.parts)) == 4 for one in self._moving(look)[-1:])
 
     def draw(self, look: Look, view: Posed, section: int = 0) -> np.ndarray:
         """Draw a frame.
@@ -118,11 +171,28 @@ class Wardrobe:
         Returns:
             As `Renderer.render`.
         """
-        renderer = self.prepare(look)
-        shown = [view.masks[region.mask] for region in look.regions if not region.frames]
-        columns = [self._columns[r.mask, r.frames] for r in look.regions if r.frames]
+        tone = look.tone, view.choices.get(section)
+        moved = moved_by(look.moves, view.snapshot, view.time)
+        if moved is None:
+            return self._render(self._still(look), view, tone)
+        *sheet, above = self._moving(look)
+        ground = self._render(sheet[0], view, tone) if sheet else None
+        return self._render(above, view, tone, moved, ground)
+
+    def _render(
+        self,
+        stack: Stack,
+        view: Posed,
+        tone: tuple[Tone, Choices | None],
+        moved: Moved | None = None,
+        ground: np.ndarray | None = None,
+    ) -> np.ndarray:
+        """Draw a frame with one stack."""
+        regions = stack.regions
+        shown = [view.masks[region.mask] for region in regions if not region.frames]
+        columns = [self._columns[r.mask, r.frames] for r in regions if r.frames]
         everything = columns == list(range(self._followed))
-        return renderer.render(
+        return self._renderer(stack).render(
             view.snapshot,
             view.fading,
             view.source,
@@ -130,6 +200,7 @@ class Wardrobe:
             view.shares,
             view.lay,
             None if everything else columns,
-            look.tone,
-            view.choices.get(section),
+            *tone,
+            moved,
+            ground,
         )

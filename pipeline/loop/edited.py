@@ -18,10 +18,16 @@ from pipeline.options.solve_options import SolveOptions
 from stages.flows.passage import Passage
 from stages.flows.view import View
 from stages.frame import Frame
+from stages.hand.locks import Locks
 from stages.hand.worked import Worked
 from stages.motion.advect import Carried
+from stages.motion.meeting import Meeting
 from stages.snapshot import Snapshot
 from stages.triangulate import Triangulator
+
+FADE = 6
+"""Frames before and after the middle between two edited ones in which one solution becomes the
+other."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,20 +107,61 @@ class EditedFrames:
         if replayed.worked is begun:
             return
         snapshot = self._triangulator.next(frame, Carried.by_hand(replayed.worked))
+        made = snapshot.locks.but_for(begun.locks)
         here = _Found(here.ready, snapshot)
-        earlier = self._backwards(here, self._waiting[:-1])
-        self._waiting = [*earlier, here]
+        self._waiting = [*self._reached_back(here, self._waiting[:-1], made), here]
         here = self._resumed(here)
         self._waiting[-1] = here
         self._edited, self._snapshot = here, here.snapshot
         yield from self._given()
 
-    def _backwards(self, edited: _Found, before: Sequence[_Found]) -> list[_Found]:
+    def _reached_back(self, edited: _Found, before: Sequence[_Found], made: Locks) -> list[_Found]:
+        """Let the edits of a frame reach back: to the shot's begin, or half way to others.
+
+        Args:
+            edited: The frame.
+            before: Those before it that are not final, in order.
+            made: What its own edits hold fast.
+        """
+        if self._edited is None:
+            return self._backwards(edited, before)
+        half = len(before) // 2
+        fade = min(FADE, half)
+        begin = half - fade
+        back = self._backwards(edited, before[begin:], made)
+        pairs = list(zip(before[begin:], back, strict=True))
+        meetings = [
+            Meeting(one.snapshot.mesh, other.snapshot.mesh) for one, other in pairs[: 2 * fade]
+        ]
+        shares = np.arange(1, 2 * fade + 1) / (2 * fade + 1)
+        lines = _lines(meetings[fade], shares) if fade else shares
+        met = [
+            self._between(pair, meeting, share, line)
+            for pair, meeting, share, line in zip(pairs, meetings, shares, lines, strict=False)
+        ]
+        return [*before[:begin], *met, *back[2 * fade :]]
+
+    def _between(
+        self, pair: tuple[_Found, _Found], meeting: Meeting, share: float, line: float
+    ) -> _Found:
+        """A frame that was reached from both sides, on the way from one solution to the other."""
+        nearer = pair[int(share > 0.5)]
+        mesh = meeting.between(share, line)
+        if mesh is None:
+            return nearer
+        locks = pair[0].snapshot.locks.joined(pair[1].snapshot.locks).within(mesh)
+        snapshot = self._triangulator.fit(nearer.ready.frame, mesh)
+        return _Found(nearer.ready, replace(snapshot, locks=locks))
+
+    def _backwards(
+        self, edited: _Found, before: Sequence[_Found], made: Locks | None = None
+    ) -> list[_Found]:
         """Follow an edited frame backwards in time.
 
         Args:
             edited: The frame.
             before: Those before it, in order; they are solved again.
+            made: What edits of the frame hold fast, if all else shall stay as it was solved.
         """
         later, again = edited, []
         view = View(later.ready.frame.pixels)
@@ -125,9 +172,26 @@ class EditedFrames:
             mesh_from = MeshFrom.SAME_PICTURE if is_same else passage
             ready = replace(one.ready, mesh_from=mesh_from)
             snapshot = followed(self._triangulator, self._options, ready, later.snapshot)
+            if made is not None:
+                snapshot = self._but_for(made, one, snapshot)
             later, view = _Found(one.ready, snapshot), earlier
             again.append(later)
         return again[::-1]
+
+    def _but_for(self, made: Locks, one: _Found, again: Snapshot) -> Snapshot:
+        """What a frame was, with what edits made of it.
+
+        Args:
+            made: What the edits hold fast.
+            one: The frame as it was solved forwards.
+            again: What it became backwards.
+        """
+        mesh = Meeting(one.snapshot.mesh, again.mesh).only(made)
+        if mesh is None:
+            return again
+        snapshot = self._triangulator.fit(one.ready.frame, mesh)
+        locks = one.snapshot.locks.joined(again.locks).within(mesh)
+        return replace(snapshot, locks=locks)
 
     def _resumed(self, edited: _Found) -> _Found:
         """The edited frame, ready to be followed forwards: no number is given twice in a shot."""
@@ -141,6 +205,21 @@ class EditedFrames:
         snapshot = replace(edited.snapshot, mesh=mesh)
         self._triangulator.recall(edited.ready.frame, snapshot)
         return _Found(edited.ready, snapshot)
+
+
+def _lines(meeting: Meeting, shares: np.ndarray) -> np.ndarray:
+    """Left of which line [px] the later solution is, so that every frame changes as much.
+
+    Args:
+        meeting: The two solutions in the middle.
+        shares: How much of all is changed, ascending, [N].
+    """
+    places, areas = meeting.spread()
+    if not len(places):
+        return shares
+    order = np.argsort(places, kind="stable")
+    lines: np.ndarray = np.interp(shares, np.cumsum(areas[order]) / areas.sum(), places[order])
+    return lines
 
 
 def _weigh_alike(one: Frame, other: Frame) -> bool:

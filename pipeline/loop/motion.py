@@ -83,7 +83,7 @@ def with_motion(
     last = None if reached is None else reached.frame
     for seen in frames:
         frame = seen.frame
-        later = View(frame.pixels)
+        later = View(frame.pixels) if seen.view is None else seen.view
         is_new = reached is None or frame.index > reached.frame
         if is_new and holds(options.frame_range, frame, info):
             joined = before is not None and before.index == last

@@ -8,8 +8,9 @@ from typing import TypeVar
 
 from pipeline.envelope import InShot
 from pipeline.track.cuts import read_cuts
+from stages.flows.view import View
 from stages.frame import Frame
-from stages.metrics import Signature, change, likeness, signature
+from stages.metrics.signature import Signature, change, likeness, signature
 from warp_kernels.errors import OptionError
 
 Item = TypeVar("Item")
@@ -45,7 +46,9 @@ def with_shots(frames: Iterable[Frame], cuts: str) -> Iterator[InShot]:
     if not cuts:
         raise OptionError("--cuts '': use auto, none or the path of a list")
     if cuts == "auto":
-        return (InShot(shot, frame) for frame, shot in detected_shots(frames, lambda frame: frame))
+        viewed = ((frame, View(frame.pixels)) for frame in frames)
+        found = detected_shots(viewed, lambda seen: seen[0], lambda seen: seen[1])
+        return (InShot(shot, frame, view=view) for (frame, view), shot in found)
     known = frozenset() if cuts == "none" else read_cuts(Path(cuts))
     return _listed(frames, known)
 
@@ -62,13 +65,14 @@ def _listed(frames: Iterable[Frame], cuts: frozenset[int]) -> Iterator[InShot]:
 
 
 def detected_shots(
-    items: Iterable[Item], frame_of: Callable[[Item], Frame]
+    items: Iterable[Item], frame_of: Callable[[Item], Frame], view_of: Callable[[Item], View]
 ) -> Iterator[tuple[Item, int]]:
     """Find hard cuts; holds back as many items as a decision needs to look ahead.
 
     Args:
         items: Frames, or what comes with them, in order.
         frame_of: Gives the frame of an item.
+        view_of: Gives the view of its picture.
 
     Yields:
         Every item, and the number of the frame with which its shot begins.
@@ -86,7 +90,7 @@ def detected_shots(
         return item, shot
 
     for item in items:
-        detector.add(signature(frame_of(item).pixels))
+        detector.add(signature(view_of(item)))
         waiting.append(item)
         if len(waiting) > AHEAD:
             yield decided()

@@ -104,12 +104,16 @@ RANGE_OPTIONS = tuple(
 _SOLVING = {"triangles", "motion", "processes", "track", "resume", "fps", "page", "stream", "seed"}
 """Groups and options that mean nothing once there is a track."""
 
-_LOOKED_AT = ("styles", "regions", "palette", "grade", "background", "fps")
+_HEARD = ("audio_mode", "audio_offset", "beats")
+_SOLVED_WITH = ("overwrite", "resume", *_HEARD)
+"""Options of an output that a track has, and those that say what a timeline hears."""
+
+_LOOKED_AT = ("styles", "regions", "palette", "grade", "background", "fps", *_HEARD)
 """Options that say what a timeline may change, and when."""
 
 COMMAND_OPTIONS: dict[str, Callable[[Option], bool]] = {
     "animate": lambda o: True,
-    "solve": lambda o: o.group not in ("look", "output") or o.dest in ("overwrite", "resume"),
+    "solve": lambda o: o.group not in ("look", "output") or o.dest in _SOLVED_WITH,
     "render": lambda o: not _SOLVING & {o.group, o.dest},
     "preview": lambda o: o.dest not in ("track", "resume", "jobs", "edits"),
     "plan": lambda o: o.group == "range" or o.dest == "cuts",

@@ -5,8 +5,10 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
+from pipeline.options.hearing import Hearing
 from stages.look.framing import Framing, framing_of
 from stages.masks.region import Region
+from stages.moves import MOVES, Move
 from stages.toning.grade import Grade
 from stages.toning.palette import Palette
 from warp_kernels.color_model import CONSTANT, LINEAR, ColorModel
@@ -54,6 +56,16 @@ class Look:
         },
     )
     """Styles inside of masks, over `styles`, bottom to top."""
+    moves: tuple[Move, ...] = field(
+        default=(),
+        metadata={
+            "help": "how triangles move while they are drawn, repeatable, one after the other",
+            "registry": MOVES,
+            "metavar": "SPEC",
+            "flag": "move",
+        },
+    )
+    """How triangles move, the first one first."""
     palette: Palette | None = field(
         default=None,
         metadata={
@@ -130,6 +142,8 @@ class Look:
         },
     )
     """A file with what changes over time, or the name of a shipped one."""
+    hearing: Hearing = field(default_factory=Hearing)
+    """What the file hears."""
     sections: tuple["Look", ...] = ()
     """Looks that the file gives to parts of the film, in place of this one."""
     score: Any = None

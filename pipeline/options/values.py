@@ -66,3 +66,4 @@ def read_value(kind: str, text: str, parameter: str | None = None) -> Any:
 
 text_value: Callable[[str], str] = partial(read_value, "str")
 whole_number: Callable[[str], int] = partial(read_value, "int")
+plain_number: Callable[[str], float] = partial(read_value, "float")

@@ -18,7 +18,10 @@ _NEAR = Fraction(1, 4)
 that place: containers round times."""
 NEAR_BAR = 0.05
 """A bar is near to a part of the film if it is no further away than this part of it."""
-NO_BEAT = 'nothing is heard that has beats; write beats = "FILE" or bpm = 120 on top'
+NO_BEAT = (
+    "no beat is heard; give --audio SONG, --beats FILE (trimotion listen writes it), or write "
+    "bpm = 120 on top"
+)
 """What to say where beats are counted and there are none."""
 
 

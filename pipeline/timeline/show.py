@@ -75,13 +75,21 @@ class Show:
         timeline: What the file says.
         clock: The time of the film.
         looks: The looks of its sections, with the styles that are shown.
+        notes: What is told of what it hears, one sentence each.
 
     Raises:
         OptionError: If sections or keys are not in order, or beats are counted and there are none.
     """
 
-    def __init__(self, timeline: Timeline, clock: Clock, looks: tuple[Look, ...]) -> None:
+    def __init__(
+        self,
+        timeline: Timeline,
+        clock: Clock,
+        looks: tuple[Look, ...],
+        notes: tuple[str, ...] = (),
+    ) -> None:
         self.timeline = timeline
+        self.notes = notes
         self.clock = clock
         begins = list(_begins(timeline, clock, looks))
         self.sections: list[Placed] = []

@@ -86,7 +86,7 @@ def parse_timeline(text: str, file: str, look: Look) -> Timeline:
     beats = _beats(tables, places)
     if beats is not None:
         beats = beats.with_downbeats(meter if "meter" in tables else None)
-    return Timeline(file, tuple(sections), curves, bpm, meter, beats)
+    return Timeline(file, tuple(sections), curves, bpm, meter, "meter" in tables, beats)
 
 
 def _tables(text: str, file: str) -> dict[str, Any]:

@@ -157,12 +157,24 @@ class Signals:
         return np.array([self.clock.later(float(time), span) - time for time in self.times])
 
     def _ago(self, since: np.ndarray) -> np.ndarray:
-        """How long ago, told half a frame late, so that a frame just before a moment has it."""
-        ago = since - self.half
-        return np.where(np.isfinite(since), np.where(ago < 0, 0.0, ago), NEVER)
+        """How long before the frame in which it is shown a moment was.
+
+        Moments are shown in the frame that is nearest to them and counted from there on: else a
+        pulse would be caught now at its peak and now half a frame after it.
+
+        Args:
+            since: Half a frame late [s], [N], so that a frame just before a moment has it.
+        """
+        rate = float(self.clock.rate)
+        moments = np.where(np.isfinite(since), self._late - since, 0.0)
+        shown = np.floor(moments * rate + 0.5 + 1e-6) / rate
+        ago = np.where(since - self.half < self.half, 0.0, np.maximum(self.times - shown, 0.0))
+        return np.where(np.isfinite(since), ago, NEVER)
 
     @cached_property
     def _heard(self) -> Heard:
         if self.clock.heard is None:
-            raise OptionError('nothing is heard; write beats = "FILE" on top')
+            raise OptionError(
+                "there is no sound; give --audio SONG, or --beats FILE with strengths"
+            )
         return self.clock.heard

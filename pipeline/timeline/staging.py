@@ -2,16 +2,21 @@
 
 from dataclasses import replace
 from functools import lru_cache
+from pathlib import Path
 
+from pipeline.options.hearing import NOT_LISTENED
 from pipeline.options.job import Job
 from pipeline.options.look import Look
 from pipeline.timeline.clock import Clock
+from pipeline.timeline.ears import heard_for
 from pipeline.timeline.show import Show
 from pipeline.timeline.show_file import read_timeline
 from pipeline.timeline.timeline import Timeline
+from stages.hearing.beats_file import read_beats
 from stages.hearing.heard import Heard
 from stages.media import MediaInfo
 from warp_kernels.color_model import ColorModel
+from warp_kernels.errors import OptionError
 
 
 def with_timeline(job: Job) -> Job:
@@ -36,8 +41,18 @@ def staged(look: Look) -> Look:
         OptionError: As `with_timeline`.
     """
     if look.timeline is None:
+        if look.hearing.beats is not None:
+            raise OptionError(
+                f"--beats {look.hearing.beats}: nothing looks at beats; give --timeline, too"
+            )
         return look
     timeline = read_timeline(look.timeline, look)
+    named = look.hearing.beats
+    if named == NOT_LISTENED:
+        timeline = replace(timeline, beats=None)
+    elif named is not None:
+        told = _beats_of(named).with_downbeats(timeline.meter if timeline.says_meter else None)
+        timeline = replace(timeline, beats=told)
     looks = tuple(section.look for section in timeline.sections)
     return replace(look, sections=looks, score=timeline)
 
@@ -57,25 +72,18 @@ def show_of(look: Look, model: ColorModel, info: MediaInfo) -> Show | None:
     timeline = look.score
     if not isinstance(timeline, Timeline):
         return None
-    clock = Clock.of(info, heard_for(timeline, info))
+    heard, notes = heard_for(timeline, look.hearing, info)
+    clock = Clock.of(info, heard)
     base = replace(look, sections=(), score=None)
     looks = (base, *(section.look for section in timeline.sections))
     shown = tuple(replace(one, styles=one.shown_styles(model)) for one in looks)
-    return Show(timeline, clock, shown)
+    return Show(timeline, clock, shown, notes)
 
 
-def heard_for(timeline: Timeline, info: MediaInfo) -> Heard | None:
-    """What a timeline hears; nothing if it does not listen.
-
-    Args:
-        timeline: The timeline.
-        info: The source.
-    """
-    if not timeline.needs_sound:
-        return None
-    if timeline.beats is not None:
-        return timeline.beats
-    if timeline.bpm is not None:
-        seconds = float(info.duration or 0)
-        return Heard.steady(max(seconds, 1.0), timeline.bpm, timeline.meter)
-    return None
+def _beats_of(name: str) -> Heard:
+    """The beats of the file that `--beats` names."""
+    try:
+        return read_beats(Path(name))
+    except OSError as error:  # a name that no file can have
+        reason = str(error.strerror or error).lower()
+        raise OptionError(f"--beats {name[:30]}: {reason}; give the name of a file") from error

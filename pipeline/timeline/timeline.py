@@ -9,6 +9,7 @@ from pipeline.options.look import Look
 from pipeline.timeline.expression import Expression
 from pipeline.timeline.keyframes import Key
 from pipeline.timeline.place import Place
+from pipeline.timeline.signals import STRENGTHS
 from pipeline.timeline.targets import MESH, Target
 from pipeline.timeline.times import START, Span, When
 from stages.hearing.heard import Heard
@@ -97,8 +98,27 @@ class Timeline:
     """The tempo where nothing is heard."""
     meter: int = 4
     """Beats of a bar where nothing is heard."""
+    says_meter: bool = False
+    """Whether the file says so."""
     beats: Heard | None = None
     """What is heard, if the file names a file that says so."""
+
+    @property
+    def hears_strengths(self) -> bool:
+        """Whether a curve looks at strengths or onsets."""
+        return self.hears_onsets or bool(self._names & STRENGTHS.keys())
+
+    @property
+    def hears_onsets(self) -> bool:
+        """Whether a curve looks at onsets."""
+        return "onset" in self._names
+
+    @property
+    def _names(self) -> frozenset[str]:
+        """Variables that curves look at."""
+        courses = [curve.course for curve in self.all_curves]
+        named = (one.names for one in courses if isinstance(one, Expression))
+        return frozenset().union(*named)
 
     @property
     def all_curves(self) -> list[Curve]:

@@ -1,6 +1,7 @@
 """A field of motion vectors that can be asked anywhere."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -41,13 +42,37 @@ class FlowField:
         Returns:
             Motion [px], shape [N, 2] float64.
         """
-        last = np.array([self.vectors.shape[1] - 1, self.vectors.shape[0] - 1])
-        places = points * ((last + 1) / (self.width, self.height)) - 0.5
-        places = np.clip(places, 0, last)
-        cells = places.astype(np.int64)
-        x0, y0 = cells.T
-        x1, y1 = np.minimum(cells + 1, last).T
-        right, down = (places - cells).T[:, :, None]
-        upper = (1 - right) * self.vectors[y0, x0] + right * self.vectors[y0, x1]
-        lower = (1 - right) * self.vectors[y1, x0] + right * self.vectors[y1, x1]
-        return (1 - down) * upper + down * lower
+        rows, columns = self.vectors.shape[:2]
+        # coordinates apart: numpy is slow where the last axis is a point
+        x, x0, x1 = _between(points[:, 0], columns, self.width)
+        y, y0, y1 = _between(points[:, 1], rows, self.height)
+        motion = np.empty((len(points), 2))
+        for axis, plane in enumerate(self._planes):
+            upper = (1 - x) * plane[columns * y0 + x0] + x * plane[columns * y0 + x1]
+            lower = (1 - x) * plane[columns * y1 + x0] + x * plane[columns * y1 + x1]
+            motion[:, axis] = (1 - y) * upper + y * lower
+        return motion
+
+    @cached_property
+    def _planes(self) -> tuple[np.ndarray, np.ndarray]:
+        """Both coordinates of the vectors, row after row, each [h w]."""
+        right, down = np.ascontiguousarray(self.vectors.reshape(-1, 2).T)
+        return right, down
+
+
+def _between(
+    places: np.ndarray, count: int, length: int
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Where places lie between the centres of equal cells along a side.
+
+    Args:
+        places: Along the side [px], shape [N].
+        count: Number of cells.
+        length: Length of the side [px].
+
+    Returns:
+        The part of the way from one centre to the next [0..1], and the cells of both, each [N].
+    """
+    along = np.clip(places * (count / length) - 0.5, 0, count - 1)
+    cells = along.astype(np.int64)
+    return along - cells, cells, np.minimum(cells + 1, count - 1)

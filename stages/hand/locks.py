@@ -85,6 +85,14 @@ class Locks:
             np.setdiff1d(self.bare, bare),
         )
 
+    def joined(self, other: "Locks") -> "Locks":
+        """These and those of another mesh of the shot."""
+        return self.adding(other.vertices, other.edges, other.bare)
+
+    def but_for(self, other: "Locks") -> "Locks":
+        """These but for others."""
+        return self.without(other.vertices, other.edges, other.bare)
+
     def within(self, mesh: Mesh) -> "Locks":
         """Those of them that the mesh still has.
 

@@ -99,6 +99,22 @@ class Heard:
             first = int(np.abs(self.beats - self.downbeats[0]).argmin())
         return replace(self, downbeats=self.beats[first::meter], meter=meter)
 
+    def told_by(self, other: "Heard") -> "Heard":
+        """The same sound with what another source says of it: a person, or another program.
+
+        Args:
+            other: Its beats and bars count, its onsets, its sections and its envelopes, each where
+                it has any.
+        """
+        timed = other if other.has_beats else self
+        return replace(
+            timed,
+            duration=max(self.duration, other.duration),
+            sections=other.sections or self.sections,
+            onsets=other.onsets if len(other.onsets) else self.onsets,
+            envelopes={**self.envelopes, **other.envelopes},
+        )
+
     def moved(self, by: float) -> "Heard":
         """The same sound, started later.
 
@@ -128,7 +144,8 @@ class Heard:
         if found is None:
             known = ", ".join(self.envelopes) or "none: the file holds beats only"
             raise OptionError(
-                f"{name}: nothing tells how strong it is ({known}); listen to a sound"
+                f"{name}: nothing tells how strong it is ({known}); "
+                "give --audio SONG, or what trimotion listen writes"
             )
         return found
 

@@ -2,9 +2,9 @@
 
 import cv2
 import numpy as np
-from scipy.spatial import Delaunay, cKDTree
 
-from stages.mesh import Mesh, areas_of, mesh_of
+from stages.layouts.delaunay import apart_from, delaunay_mesh, earlier_ones
+from stages.mesh import Mesh
 from warp_kernels.errors import OptionError
 
 SALIENCY_LINES = 512
@@ -34,7 +34,7 @@ def drawn_mesh(
     # Every triangulation of I inner and B border vertices has 2 I + B - 2 triangles.
     inner_count = (count + 2 - len(border)) // 2
     points = _inner_points(density, border, inner_count, 0.4 * even_spacing, rng)
-    return mesh_of(points, _delaunay(points), width, height)
+    return delaunay_mesh(border, points[len(border) :], width, height)
 
 
 def _density(
@@ -144,11 +144,9 @@ def _inner_points(
         drawn = _draw(weights, 2 * missing, rng)
         margin = min(spacing / 2, 0.25 * size.min())
         drawn = drawn[((drawn > margin) & (drawn < size - margin)).all(axis=1)]
-        drawn = drawn[cKDTree(points).query(drawn)[0] >= spacing] if len(drawn) else drawn
-        near = cKDTree(drawn).query_pairs(spacing, output_type="ndarray")
-        apart = np.ones(len(drawn), dtype=bool)
-        apart[near.max(axis=1)] = False  # of two close ones the later goes
-        points = np.concatenate([points, drawn[apart][:missing]])
+        drawn = drawn[apart_from(drawn, points, spacing)]
+        drawn = drawn[earlier_ones(drawn, spacing)]
+        points = np.concatenate([points, drawn[:missing]])
         spacing = max(0.8 * spacing, CLOSEST)
     return points
 
@@ -172,9 +170,3 @@ def _draw(density: np.ndarray, count: int, rng: np.random.Generator) -> np.ndarr
     sums = sums / np.maximum(sums[:, -1:], 1e-300) + np.arange(len(density))[:, None]
     ends = np.concatenate([[0.0], sums.ravel()])
     return np.stack([np.interp(rows + along, ends, np.arange(len(ends))) % density.shape[1], y], 1)
-
-
-def _delaunay(points: np.ndarray) -> np.ndarray:
-    """Delaunay triangles of points in a rectangle, without flat ones along its border, [T, 3]."""
-    triangles = Delaunay(points).simplices
-    return triangles[areas_of(points[triangles]) != 0]

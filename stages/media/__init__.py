@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from stages.media.writing.encode_options import EncodeOptions as EncodeOptions
     from stages.media.writing.output_plan import OutputPlan as OutputPlan
     from stages.media.writing.output_plan import check_output as check_output
+    from stages.media.writing.output_plan import keeps_alpha as keeps_alpha
 
 _HOMES = {
     "FrameRange": "stages.media.frame_range",
@@ -39,6 +40,7 @@ _HOMES = {
     "EncodeOptions": "stages.media.writing.encode_options",
     "OutputPlan": "stages.media.writing.output_plan",
     "check_output": "stages.media.writing.output_plan",
+    "keeps_alpha": "stages.media.writing.output_plan",
 }
 """Where the names live."""
 

@@ -5,6 +5,8 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
+from stages.flows.view import View
+
 BLOCKS = (9, 16)
 """Rows and columns of a signature's colours."""
 PIXELS_PER_BLOCK = 8
@@ -29,13 +31,13 @@ class Signature:
     """The picture, small, [h, w, 3] uint8; no side is shorter than a patch."""
 
 
-def signature(pixels: np.ndarray) -> Signature:
+def signature(view: View) -> Signature:
     """Describe a picture.
 
     Args:
-        pixels: Code values, [H, W, 3] uint8.
+        view: The picture.
     """
-    return Signature(_colors(pixels), _thumbnail(pixels))
+    return Signature(_colors(view.pixels), _thumbnail(view.coarse))
 
 
 def change(a: Signature, b: Signature) -> float:

@@ -23,6 +23,8 @@ MOST_COMPILERS = 8
 """Threads that compile: each reads Warp's headers for itself, which takes as long as a kernel."""
 COMPILER = "trimotion-compiler"
 """Name of these threads."""
+CUDA_BLOCK = 256
+"""Threads of a block in a launch on a card that does not say otherwise; on the CPU it is one."""
 
 _pool: ThreadPoolExecutor | None = None
 """The threads that an early start has left: they have read the headers."""
@@ -84,15 +86,17 @@ class Kernels:
 
     def _name(self, module: Any) -> str:
         """Of the folder of a compiled module."""
-        # as a launch that does not say otherwise
-        threads = 1 if self._device.is_cpu else None
-        return str(module.get_module_identifier(threads))
+        return str(module.get_module_identifier(_block_of(self._device)))
 
     def _compile(self, modules: list[Any], look: Callable[[], None]) -> None:
         """Compile modules side by side, and look after each."""
         pool = _take_pool()
         try:
-            jobs = [pool.submit(wp.load_module, module, self._device) for module in modules]
+            block = _block_of(self._device)
+            jobs = [
+                pool.submit(wp.load_module, module, self._device, block_dim=block)
+                for module in modules
+            ]
             for job in as_completed(jobs):
                 job.result()
                 look()
@@ -111,9 +115,18 @@ def compile_early(device: Any, kernels: list[Any]) -> None:
     global _pool
     _pool = _take_pool()
     with waited_turn(Path(wp.config.kernel_cache_dir or ""), lambda: None):
-        jobs = [_pool.submit(wp.load_module, kernel.module, device) for kernel in kernels]
+        block = _block_of(device)
+        jobs = [
+            _pool.submit(wp.load_module, kernel.module, device, block_dim=block)
+            for kernel in kernels
+        ]
         for job in jobs:
             job.result()
+
+
+def _block_of(device: Any) -> int:
+    """Threads of a block of a launch."""
+    return 1 if device.is_cpu else CUDA_BLOCK
 
 
 def _take_pool() -> ThreadPoolExecutor:

@@ -37,6 +37,9 @@ class Coat:
     """Whether it is drawn inside of a mask alone."""
     is_followed: bool = False
     """Whether it is drawn on the triangles of a followed region alone."""
+    moves: bool = False
+    """Whether it is drawn on triangles that are elsewhere than they lie: as much of it as there is
+    of them, in the light that falls on them there."""
 
 
 @wp.func
@@ -159,7 +162,8 @@ def stack_of(coats: tuple[Coat, ...]) -> Any:
         return nothing
     top, layer = coats[-1].shader, len(coats) - 1
     below, is_masked = stack_of(coats[:-1]), coats[-1].is_masked
-    is_followed = coats[-1].is_followed
+    is_followed, moves = coats[-1].is_followed, coats[-1].moves
+    is_lit = moves and coats[-1].blend == "normal"
     on_opaque = any(coat.is_opaque for coat in coats[:-1])
     lay = _laid(coats[-1].blend, on_opaque) if len(coats) > 1 else lay_on_nothing
     cover = inked_on_opaque if on_opaque else inked
@@ -179,6 +183,10 @@ def stack_of(coats: tuple[Coat, ...]) -> Any:
             ink.opacity *= mask_at(scene.masks, row, scene.mask_rows, sample.place)
         if wp.static(is_followed):
             ink.opacity *= float(scene.shares[sample.triangle, own.mask]) / 255.0
+        if wp.static(moves):
+            ink.opacity *= sample.presence
+        if wp.static(is_lit):
+            ink.color *= sample.light
         return cover(under, lay(under, ink.color, ink.opacity * own.opacity), ink.coverage)
 
     return blended

@@ -1,23 +1,23 @@
 """Every device array of one output, and the recorded launches that draw a mesh into it."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import warp as wp
 
 from warp_kernels.device.device import Device, Phase
-from warp_kernels.drawing.blend import Coat
-from warp_kernels.drawing.gbuffer import fill_triangles, record_gbuffer
+from warp_kernels.drawing.coats import coats_of
+from warp_kernels.drawing.gbuffer import LEAST_ROWS, fill_triangles, record_gbuffer
 from warp_kernels.drawing.layers import Layers, LayerTables
+from warp_kernels.drawing.moved import MAP, Moved, MovedTables, clear_rows, record_clear, rows_of
 from warp_kernels.drawing.paint import Paint, shapes_of
 from warp_kernels.drawing.sample_points import LIST, parts_of_a_pixel
 from warp_kernels.drawing.shade import channels_of, record_shade, shade_kernel
 from warp_kernels.drawing.triangle_setup import prepare_kernel, record_prepare
 from warp_kernels.limits import MAX_SIDE
-from warp_kernels.scene.places import hashes_of, to_places
-from warp_kernels.scene.scene import FIXED, FRACTION_BITS, Numbers, Scene, StyleParameters
+from warp_kernels.scene.places import centres, hashes_of, to_places
+from warp_kernels.scene.scene import FIXED, Numbers, Scene, StyleParameters
 from warp_kernels.scene.source_picture import reduced, step_for
 from warp_kernels.scene.stroke_lay import own_lay
 from warp_kernels.scene.texels import Texels, pack
@@ -42,6 +42,7 @@ class Canvas:
         textures: What the shader of each style looks into, or None; masked ones last.
         followed: Numbers of the masked styles that are drawn on triangles of `Paint.shares`
             instead, in the order of these.
+        moves: Whether triangles are drawn elsewhere than they lie.
     """
 
     def __init__(
@@ -53,15 +54,17 @@ class Canvas:
         masked: tuple[Style, ...],
         textures: list[Texels | None],
         followed: tuple[int, ...] = (),
+        moves: bool = False,
     ) -> None:
         self.device = device
         self.picture = picture
         self.output = output
         self.samples = max(1, min(SAMPLES, MAX_SIDE // max(output)))
-        self._coats = coats_of(styles, masked, followed)
+        self._coats, self._moves = coats_of(styles, masked, followed, moves), moves
         self._masked, self._followed = len(masked) - len(followed), len(followed)
-        self._is_even = all(style.is_even for style in styles) and not masked
+        self._is_even = all(style.is_even for style in styles) and not (masked or moves)
         styles = (*styles, *masked)
+        self._has_ground = any(style.stays for style in styles)
         self._lays_strokes = any(style.lays_strokes for style in styles)
         self._prepares = {i: s.prepare for i, s in enumerate(styles) if s.prepare is not None}
         device.expect(self._kernels(fades=False))
@@ -85,13 +88,14 @@ class Canvas:
         """What drawing a frame launches, those first that take longest to compile."""
         shade = shade_kernel(self._coats, self.samples, fades)
         preparing = (prepare_kernel(prepare) for prepare in self._prepares.values())
-        return [shade, *preparing, fill_triangles]
+        return [shade, *preparing, fill_triangles, *([clear_rows] if self._moves else [])]
 
     def _steady_scene(self, *, needs_source: bool) -> dict[str, Any]:
         """The parts of a scene that are the same for all frames."""
         width, height = self.picture
         step = step_for(self.picture, self.output)
         size = (-(-height // step), -(-width // step)) if needs_source else (1, 1)
+        ground = self.output[::-1] if self._has_ground else (1, 1)
         across, down = self._scale
         sample_size = (FIXED / (across * self.samples), FIXED / (down * self.samples))
         return {
@@ -103,6 +107,7 @@ class Canvas:
             "columns": self._filled(centres(width, self.output[0]), int),
             "rows": self._filled(centres(height, self.output[1]), int),
             "pixel": float(np.sqrt((0.5 / np.square(self._scale)).sum())),
+            "ground": self.device.empty(ground, wp.vec3ub),
             "parts": self._filled(parts_of_a_pixel(self.samples, sample_size), int),
         }
 
@@ -148,6 +153,8 @@ class Canvas:
         layers: Layers | None = None,
         source: np.ndarray | None = None,
         masks: Sequence[np.ndarray] = (),
+        moved: Moved | None = None,
+        ground: np.ndarray | None = None,
     ) -> np.ndarray:
         """Draw a mesh.
 
@@ -159,6 +166,9 @@ class Canvas:
             source: The picture [code values], [H, W, 3] uint8; looked at if a style needs it.
             masks: For each masked style that is not followed where it is drawn (255) and where
                 not (0), [H, W] uint8.
+            moved: Where triangles are drawn; needed if they move.
+            ground: What is seen behind them [code values], [rows, columns, 3] uint8; needed if a
+                style stays.
 
         Returns:
             Code values, [rows, columns, 3] uint8, or [rows, columns, 4] with straight alpha if no
@@ -168,6 +178,11 @@ class Canvas:
             ValueError: If the paint does not say for every followed region which triangles it has.
         """
         self._check_shares(paint)
+        if moved is not None:
+            reach = MAX_SIDE / (self.samples * max(self._scale))
+            rows = rows_of(moved, paint, layers, self.picture, reach)
+            vertices, triangles = rows.vertices, rows.triangles
+            paint, layers = rows.paint, rows.layers
         self._reserve(
             vertices=len(vertices),
             triangles=len(triangles),
@@ -180,20 +195,31 @@ class Canvas:
         self.device.write(self._triangles, triangles)
         self.device.write(self._count, np.array([len(triangles)]))
         self._write_paint(paint, shapes=not self._is_even or layers is not None)
+        if moved is not None:
+            self.device.write(self._moved.anchors, rows.anchors)
+            self.device.write(self._moved.maps, rows.maps)
         if source is not None and self._steady["source"].size > 1:
             self.device.write(self._steady["source"], reduced(source, self._steady["source_step"]))
         if masks:
             self.device.write(self._steady["masks"], np.concatenate(masks))
-        for preparing in self._preparing:
-            preparing.resize(len(paint.colors))
-        phases = list(self._preparing)
-        for top, filling, shading in self._bands(fades=layers is not None):
-            rows = min(self._band, self.output[1] - top)
-            filling.resize(rows, threads=len(triangles))
-            shading.resize(rows)
-            phases += [filling, shading]
-        self.device.run(phases)
+        if ground is not None:
+            self.device.write(self._steady["ground"], ground)
+        counts = len(paint.colors), len(triangles)
+        self.device.run(self._phases(*counts, fades=layers is not None))
         return self.device.read(self._pixels, self.output[1])
+
+    def _phases(self, layers: int, triangles: int, *, fades: bool) -> list[Phase]:
+        """What draws so many layers, some of them triangles of the frame."""
+        phases = list(self._preparing)
+        for preparing in phases:
+            preparing.resize(layers)
+        for top, *clearing, filling, shading in self._bands(fades=fades):
+            rows = min(self._band, self.output[1] - top)
+            for phase in (*clearing, shading):
+                phase.resize(rows)
+            filling.resize(rows, threads=triangles)
+            phases += [*clearing, filling, shading]
+        return phases
 
     def _check_shares(self, paint: Paint) -> None:
         """Refuse a paint without what followed styles look at: memory holds an earlier one's."""
@@ -269,7 +295,10 @@ class Canvas:
         tables.spans = self._empty(layers, wp.vec2i)
         tables.links = self._empty(links, int)
         self._layers = tables
-        self._recorded: dict[bool, list[tuple[int, Phase, Phase]]] = {}
+        self._moved = MovedTables()
+        self._moved.anchors = self._empty(layers if self._moves else 1, wp.vec2i)
+        self._moved.maps = self._empty((layers if self._moves else 1, MAP), float)
+        self._recorded: dict[bool, list[tuple[Any, ...]]] = {}
         self._recorded_preparing: list[Phase] | None = None
 
     @property
@@ -301,7 +330,7 @@ class Canvas:
         """Output pixels per pixel of the picture, across and down."""
         return self.output[0] / self.picture[0], self.output[1] / self.picture[1]
 
-    def _bands(self, *, fades: bool) -> list[tuple[int, Phase, Phase]]:
+    def _bands(self, *, fades: bool) -> list[tuple[Any, ...]]:
         """The launches of every band; recorded anew once the arrays have moved.
 
         Most frames of a calm clip need no look through triangles, and stills never do: their
@@ -313,8 +342,8 @@ class Canvas:
             self._recorded[fades] = bands
         return self._recorded[fades]
 
-    def _record_band(self, top: int, *, fades: bool) -> tuple[Phase, Phase]:
-        """Record what fills and what shades the band that begins with output row `top`."""
+    def _record_band(self, top: int, *, fades: bool) -> tuple[Phase, ...]:
+        """Record what empties, fills and shades the band that begins with output row `top`."""
         scale = self._scale
         filling = record_gbuffer(
             self.device,
@@ -325,6 +354,7 @@ class Canvas:
             first_row=top * self.samples,
             samples=self.samples,
             triangle_out=self._triangle_of,
+            overlaps=self._moves,
         )
         shading = record_shade(
             self.device,
@@ -334,13 +364,22 @@ class Canvas:
             parameters=self._parameters,
             layers=self._layers,
             fades=fades,
+            moved=self._moved,
             triangle_of=self._triangle_of,
             top=top,
             flows_on=top + 2 * self._band <= self.output[1],
             points_out=self._points,
             canvas_out=self._pixels,
         )
-        return filling, shading
+        if not self._moves:
+            return filling, shading
+        clearing = record_clear(
+            self.device,
+            samples=self.samples,
+            smallest_part=LEAST_ROWS,
+            triangle_out=self._triangle_of,
+        )
+        return clearing, filling, shading
 
     def _empty(self, shape: Any, dtype: Any) -> wp.array:
         return self.device.empty(shape, dtype)
@@ -350,36 +389,3 @@ class Canvas:
         array = self.device.empty(values.shape if dtype is int else len(values), dtype)
         self.device.write(array, values)
         return array
-
-
-def coats_of(
-    styles: tuple[Style, ...], masked: tuple[Style, ...], followed: tuple[int, ...] = ()
-) -> tuple[Coat, ...]:
-    """What a kernel depends on; over an opaque style it does not matter whether one is opaque.
-
-    Args:
-        styles: Bottom to top.
-        masked: Those over them that are drawn inside of masks.
-        followed: Numbers of those among these that are drawn on triangles of a region instead.
-    """
-    coats = [Coat(s.shader, s.blend, s.is_opaque, s.covers) for s in styles]
-    for number in range(1, len(coats)):
-        if any(coat.is_opaque for coat in coats[:number]):
-            coats[number] = replace(coats[number], is_opaque=False)
-    for number, s in enumerate(masked):
-        is_followed = number in followed
-        coats.append(Coat(s.shader, s.blend, False, s.covers, not is_followed, is_followed))
-    return tuple(coats)
-
-
-def centres(side: int, count: int) -> np.ndarray:
-    """Places of the centres of equal parts of a side of the picture [2^-16 px], [count].
-
-    Whole numbers throughout: parts that are a whole number of pixels apart are exactly so.
-
-    Args:
-        side: Length of the side [px].
-        count: Number of parts.
-    """
-    halves = (2 * np.arange(count, dtype=np.int64) + 1) * side
-    return (halves << (FRACTION_BITS - 1)) // count

@@ -10,13 +10,14 @@ from typing import Any
 import warp as wp
 
 from warp_kernels.drawing.layers import LayerTables, Seen, fading_look
-from warp_kernels.scene.scene import FAR, Scene, StyleParameters, extent_of, sample_at
+from warp_kernels.drawing.moved import MovedTables, resting
+from warp_kernels.scene.scene import FAR, Scene, StyleParameters, extent_of
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 
 
 @cache
-def see_through(color_at: Any, samples: int) -> Any:
+def see_through(color_at: Any, samples: int, moves: bool) -> Any:
     """A wp.func that sees a pixel as a whole, triangle by triangle or sample by sample.
 
     Warp hands a scene over by value. Where a function is called at one place only the compiler
@@ -25,9 +26,10 @@ def see_through(color_at: Any, samples: int) -> Any:
     Args:
         color_at: A wp.func `(Scene, parameters, Sample) -> vec4f`.
         samples: Samples of a pixel, across and down each.
+        moves: Whether triangles are drawn elsewhere than they lie.
     """
     every = (1 << samples * samples) - 1
-    look = fading_look(color_at)
+    look, point_in = fading_look(color_at), resting(moves)
 
     @wp.func
     def samples_in(line: wp.array(dtype=int), first: int, triangle: int) -> int:
@@ -44,6 +46,7 @@ def see_through(color_at: Any, samples: int) -> Any:
         scene: Scene,
         parameters: wp.array(dtype=StyleParameters),
         layers: LayerTables,
+        moved: MovedTables,
         line: wp.array(dtype=int),
         row: int,
         column: int,
@@ -67,8 +70,8 @@ def see_through(color_at: Any, samples: int) -> Any:
             left = left ^ own
             share = float(scene.parts[own, 2]) * wp.static(1.0 / samples**2)
             place = middle + wp.vec2i(scene.parts[own, 0], scene.parts[own, 1])
-            here = sample_at(scene, triangle, place)
-            here.extent = extent_of(scene, share, wp.static(samples))
+            extent = extent_of(scene, share, wp.static(samples))
+            here = point_in(scene, moved, triangle, place, middle, extent)
             here.row = row
             here.column = column
             found = look(scene, parameters, layers, here)

@@ -22,7 +22,12 @@ LEAST_ROWS = 1
 @wp.func_native("""
     int* const at = (int*)line;
     int column = begin;
-#if !defined(__CUDA_ARCH__)
+#if defined(__CUDA_ARCH__)
+    if (overlaps) {
+        for (; column < end; ++column) atomicMax(at + column, triangle);
+        return;
+    }
+#else
     typedef int Sixteen __attribute__((ext_vector_type(16), aligned(4)));
     typedef int Four __attribute__((ext_vector_type(4), aligned(4)));
     if (end - begin >= 16) {
@@ -38,8 +43,11 @@ LEAST_ROWS = 1
 #endif
     for (; column < end; ++column) at[column] = triangle;
 """)
-def fill_run(line: wp.uint64, begin: int, end: int, triangle: int):
-    """Fill a part of a row: whole registers, the last of which overlaps the one before."""
+def fill_run(line: wp.uint64, begin: int, end: int, triangle: int, overlaps: int):
+    """Fill a part of a row: whole registers, the last of which overlaps the one before.
+
+    Where triangles overlap the last one is seen; on the CPU it comes last.
+    """
     ...
 
 
@@ -53,6 +61,7 @@ def fill_triangles(
     scale: wp.vec2d,
     first_row: int,
     samples: int,
+    overlaps: int,
     # Out:
     triangle_out: wp.array2d(dtype=int),
 ):
@@ -95,7 +104,8 @@ def fill_triangles(
         long_column = column_of(long.position)
         short_column = column_of(short.position)
         column = wp.max(wp.min(long_column, short_column), 0)
-        fill_run(line, column, wp.min(wp.max(long_column, short_column), width), triangle)
+        end = wp.min(wp.max(long_column, short_column), width)
+        fill_run(line, column, end, triangle, overlaps)
         long.position += long.step
         short.position += short.step
         line += pitch
@@ -112,6 +122,7 @@ def record_gbuffer(
     first_row: int,
     samples: int,
     triangle_out: wp.array,
+    overlaps: bool = False,
 ) -> Phase:
     """Prepare the launch that writes every sample's triangle; its elements are rows of pixels.
 
@@ -128,8 +139,10 @@ def record_gbuffer(
         samples: Sample rows per row of pixels.
         triangle_out: Triangle of each sample of a band of the output, [rows, columns] int32;
             across it is the output's width times the samples per output pixel.
+        overlaps: Whether triangles may lie over each other: what comes later is seen then, and the
+            band was emptied before.
     """
-    inputs = [vertices, triangles, count, wp.vec2d(*scale), first_row, samples]
+    inputs = [vertices, triangles, count, wp.vec2d(*scale), first_row, samples, int(overlaps)]
     return device.record(
         fill_triangles, inputs, [triangle_out], smallest_part=LEAST_ROWS, flows_on=True
     )

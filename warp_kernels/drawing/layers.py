@@ -116,6 +116,9 @@ def fading_look(color_at: Any) -> Any:
         here.extent = sample.extent
         here.row = sample.row
         here.column = sample.column
+        here.middle = sample.middle
+        here.presence = sample.presence
+        here.light = sample.light
         rest = float(1.0)
         while rest > 0.0:
             color = color_at(scene, parameters, here)

@@ -21,6 +21,7 @@ from warp_kernels.drawing.blend import Coat, stack_of
 from warp_kernels.drawing.cross_fade import see_through
 from warp_kernels.drawing.gbuffer import LEAST_ROWS
 from warp_kernels.drawing.layers import LayerTables
+from warp_kernels.drawing.moved import MovedTables, resting
 from warp_kernels.drawing.sample_points import (
     COUNT,
     DOWN,
@@ -32,7 +33,7 @@ from warp_kernels.drawing.sample_points import (
     TRIANGLE,
     point_lister,
 )
-from warp_kernels.scene.scene import Sample, Scene, StyleParameters, extent_of, sample_at
+from warp_kernels.scene.scene import Sample, Scene, StyleParameters, extent_of
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 
@@ -68,15 +69,16 @@ def store_transparent(
 
 
 @cache
-def _faded_drawer(color_at: Any, samples: int, store: Any) -> Any:
+def _faded_drawer(color_at: Any, samples: int, store: Any, moves: bool) -> Any:
     """A wp.func that draws those pixels of a stretch anew that something shows through."""
-    look_through = see_through(color_at, samples)
+    look_through = see_through(color_at, samples, moves)
 
     @wp.func
     def draw_faded(
         scene: Scene,
         parameters: wp.array(dtype=StyleParameters),
         layers: LayerTables,
+        moved: MovedTables,
         line: wp.array(dtype=int),
         points: wp.array(dtype=int),
         listed: wp.vec3i,
@@ -89,38 +91,58 @@ def _faded_drawer(color_at: Any, samples: int, store: Any) -> Any:
             k = points[wp.static(PIXEL) + j]
             faded = layers.weights[points[wp.static(TRIANGLE) + j]] < 1.0
             if faded and k < listed[0]:
-                seen = look_through(scene, parameters, layers, line, row, column + k)
+                seen = look_through(scene, parameters, layers, moved, line, row, column + k)
                 color = seen.color
                 store(out, k, color[0], color[1], color[2], seen.opacity)
 
     return draw_faded
 
 
-@wp.func
-def point_at(scene: Scene, points: wp.array(dtype=int), row: int, column: int, j: int) -> Sample:
-    """A point of a stretch that begins with a column."""
-    at = column + points[wp.static(PIXEL) + j]
-    x = scene.columns[at] + points[wp.static(RIGHT) + j]
-    place = wp.vec2i(x, scene.rows[row] + points[wp.static(DOWN) + j])
-    here = sample_at(scene, points[wp.static(TRIANGLE) + j], place)
-    here.row = row
-    here.column = at
-    return here
+@cache
+def _point_reader(samples: int, moves: bool) -> Any:
+    """A wp.func that gives a point of a stretch."""
+    point_in = resting(moves)
+
+    @wp.func
+    def point_at(
+        scene: Scene,
+        moved: MovedTables,
+        points: wp.array(dtype=int),
+        row: int,
+        column: int,
+        share: float,
+        j: int,
+    ) -> Sample:
+        """A point of a stretch that begins with a column."""
+        at = column + points[wp.static(PIXEL) + j]
+        middle = wp.vec2i(scene.columns[at], scene.rows[row])
+        right, down = points[wp.static(RIGHT) + j], points[wp.static(DOWN) + j]
+        place = wp.vec2i(middle[0] + right, middle[1] + down)
+        extent = extent_of(scene, share, wp.static(samples))
+        triangle = points[wp.static(TRIANGLE) + j]
+        here = point_in(scene, moved, triangle, place, middle, extent)
+        here.row = row
+        here.column = at
+        return here
+
+    return point_at
 
 
 @cache
 def _stretch_drawer(coats: tuple[Coat, ...], samples: int, fades: bool) -> Any:
     """A wp.func that draws a stretch of a row."""
-    channels = channels_of(coats)
+    channels, moves = channels_of(coats), any(coat.moves for coat in coats)
     color_at, list_points = stack_of(coats), point_lister(samples)
     store = store_opaque if channels == 3 else store_transparent
-    draw_faded = _faded_drawer(color_at, samples, store)
+    point_at = _point_reader(samples, moves)
+    draw_faded = _faded_drawer(color_at, samples, store, moves)
 
     @wp.func
     def draw_stretch(
         scene: Scene,
         parameters: wp.array(dtype=StyleParameters),
         layers: LayerTables,
+        moved: MovedTables,
         line: wp.array(dtype=int),
         points: wp.array(dtype=int),
         row: int,
@@ -135,8 +157,7 @@ def _stretch_drawer(coats: tuple[Coat, ...], samples: int, fades: bool) -> Any:
         j = int(0)
         while j < (listed[2] + wp.static(LANES - 1)) & wp.static(-LANES):
             share = float(points[wp.static(COUNT) + j]) * wp.static(1.0 / samples**2)
-            here = point_at(scene, points, row, column, j)
-            here.extent = extent_of(scene, share, wp.static(samples))
+            here = point_at(scene, moved, points, row, column, share, j)
             color = color_at(scene, parameters, here)
             red[j] = share * (color[3] * color[0])
             green[j] = share * (color[3] * color[1])
@@ -155,7 +176,7 @@ def _stretch_drawer(coats: tuple[Coat, ...], samples: int, fades: bool) -> Any:
             store(out, k, red[k], green[k], blue[k], opacity[k])
             k += 1
         if wp.static(fades):
-            draw_faded(scene, parameters, layers, line, points, listed, row, column, out)
+            draw_faded(scene, parameters, layers, moved, line, points, listed, row, column, out)
         return listed[0]
 
     return draw_stretch
@@ -178,6 +199,7 @@ def shade_kernel(coats: tuple[Coat, ...], samples: int, fades: bool) -> Any:
         scene: Scene,
         parameters: wp.array(dtype=StyleParameters),
         layers: LayerTables,
+        moved: MovedTables,
         triangle_of: wp.array2d(dtype=int),
         top: int,
         # Out:
@@ -202,7 +224,9 @@ def shade_kernel(coats: tuple[Coat, ...], samples: int, fades: bool) -> Any:
         while column < canvas_out.shape[1]:
             pixel = wp.uint64(row) * wp.uint64(canvas_out.shape[1]) + wp.uint64(column)
             address = canvas_out.ptr + pixel * wp.uint64(wp.static(channels))
-            column += draw_stretch(scene, parameters, layers, line, points, row, column, address)
+            column += draw_stretch(
+                scene, parameters, layers, moved, line, points, row, column, address
+            )
 
     return shade
 
@@ -216,6 +240,7 @@ def record_shade(
     parameters: wp.array,
     layers: Any,
     fades: bool,
+    moved: Any,
     triangle_of: wp.array,
     top: int,
     flows_on: bool,
@@ -232,6 +257,7 @@ def record_shade(
         parameters: One `StyleParameters` per style.
         layers: What fading triangles let through, `LayerTables`.
         fades: Whether any triangle fades; else `layers` is not looked at.
+        moved: Where triangles are drawn, `MovedTables`; looked at if a coat moves.
         triangle_of: Triangle of every sample of a band, see `gbuffer`.
         top: The output row with which the band begins.
         flows_on: Whether the next band has as many rows: then each part of it finds its own rows
@@ -240,7 +266,7 @@ def record_shade(
         canvas_out: Code values, [rows, columns, 3] if a coat is opaque, else [rows, columns, 4]
             with straight alpha.
     """
-    inputs = [scene, parameters, layers, triangle_of, top]
+    inputs = [scene, parameters, layers, moved, triangle_of, top]
     kernel = shade_kernel(coats, samples, fades)
     # as the rows of the labels are spread: each thread shades those that it has filled
     return device.record(

@@ -2,12 +2,15 @@
 
 from typing import Any
 
-from warp_kernels.drawing.canvas import coats_of
+from warp_kernels.drawing.coats import coats_of
 from warp_kernels.styles import Style
 
 
 def kind_of_stack(
-    styles: tuple[Style, ...], masked: tuple[Style, ...], followed: tuple[int, ...] = ()
+    styles: tuple[Style, ...],
+    masked: tuple[Style, ...],
+    followed: tuple[int, ...] = (),
+    moves: bool = False,
 ) -> Any:
     """What a canvas is made for: it draws all stacks of one kind, see `Canvas.restyle`.
 
@@ -15,6 +18,7 @@ def kind_of_stack(
         styles: As for the canvas.
         masked: The same.
         followed: The same.
+        moves: The same.
 
     Returns:
         Something to compare.
@@ -23,4 +27,4 @@ def kind_of_stack(
         (type(style), *(getattr(style, name) for name in style.built_from))
         for style in (*styles, *masked)
     )
-    return coats_of(styles, masked, followed), built
+    return coats_of(styles, masked, followed, moves), moves, built

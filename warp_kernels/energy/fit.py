@@ -105,6 +105,12 @@ def fit_kernel(layout: MomentLayout) -> Any:
     side_color, side_area = side_sums(layout)
     fit = fit_moments(layout)
     expansion = shifts(model.exponents)
+    # vectors, for what is static but differs from turn to turn of a loop is known only once the
+    # whole kernel was generated, in every process anew
+    targets, sources, factors, across, down = (
+        wp.types.vector(length=len(expansion), dtype=int)(*column)
+        for column in zip(*expansion, strict=True)
+    )
 
     @wp.kernel(module="unique", module_options=EXACT)
     def fit_colors(
@@ -146,13 +152,13 @@ def fit_kernel(layout: MomentLayout) -> Any:
                         best.lower[i, i] * best.lower[k, i] * best.half[k, channel]
                     )
             for n in range(wp.static(len(expansion))):
-                factor = wp.float64(wp.static(float(expansion[n][2])))
-                for _a in range(wp.static(expansion[n][3])):
+                factor = wp.float64(factors[n])
+                for _a in range(across[n]):
                     factor *= -x
-                for _b in range(wp.static(expansion[n][4])):
+                for _b in range(down[n]):
                     factor *= -y
-                coefficients_out[triangle, channel, wp.static(expansion[n][1])] += (
-                    factor * best.half[wp.static(expansion[n][0]), channel]
+                coefficients_out[triangle, channel, sources[n]] += (
+                    factor * best.half[targets[n], channel]
                 )
 
     return fit_colors

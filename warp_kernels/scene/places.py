@@ -26,3 +26,16 @@ def hashes_of(ids: np.ndarray) -> np.ndarray:
     z = (z ^ (z >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
     z = (z ^ (z >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
     return ((z ^ (z >> np.uint64(31))) >> np.uint64(32)).astype(np.uint32)
+
+
+def centres(side: int, count: int) -> np.ndarray:
+    """Places of the centres of equal parts of a side of the picture [2^-16 px], [count].
+
+    Whole numbers throughout: parts that are a whole number of pixels apart are exactly so.
+
+    Args:
+        side: Length of the side [px].
+        count: Number of parts.
+    """
+    halves = (2 * np.arange(count, dtype=np.int64) + 1) * side
+    return (halves << (FRACTION_BITS - 1)) // count

@@ -91,6 +91,8 @@ class Scene:
     """The same of every output row, [rows]."""
     pixel: float
     """Size of an output pixel [px of the picture]."""
+    ground: wp.array2d(dtype=wp.vec3ub)
+    """What is seen behind triangles that move, [rows, columns]; empty unless a style needs it."""
     parts: wp.array2d(dtype=int)
     """Every set of samples of a pixel, see `points.parts_of_a_pixel`, [sets, 3]."""
 
@@ -112,6 +114,13 @@ class Sample:
     """Row of the output pixel."""
     column: int
     """Column of the output pixel."""
+    middle: wp.vec2i
+    """The middle of the output pixel [2^-16 px]; where the triangle is drawn elsewhere than it
+    lies, the place of its material that is seen there."""
+    presence: float
+    """How much of its triangle there is, 0 to 1; looked at where triangles are moved."""
+    light: float
+    """How much brighter it is than at rest, as a factor; the same."""
 
 
 @wp.struct

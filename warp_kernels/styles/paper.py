@@ -48,6 +48,11 @@ class Paper(Style):
         """The paper, unless it only gives its grain to what lies below."""
         return self.color if self.blend == "normal" else None
 
+    @property
+    def is_sheet(self) -> bool:
+        """Unless something shows through."""
+        return self.hides_below
+
     def numbers(self) -> tuple[float, ...]:
         """Red, green, blue [code values], grain, size, sheets."""
         return (*parse_color(self.color), self.grain, self.size, self.sheets)

@@ -1,11 +1,10 @@
 """What every style has in common."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from warp_kernels.errors import OptionError
-from warp_kernels.styles.color import parse_color
+from warp_kernels.styles.parameters import check_parameters
 
 if TYPE_CHECKING:
     import numpy as np
@@ -23,13 +22,7 @@ class Style:
     The help imports all styles, so their modules are light: shaders are `Imported` when they are
     asked for, and methods import what they need.
 
-    Parameters are fields; their metadata says what they may be, and that is checked here:
-
-        help       what it does
-        unit       its unit, if it has one
-        range      least and largest value
-        choices    the texts that it may be
-        form       `color`: written #rgb, #rrggbb or a name of CSS
+    Parameters are fields; their metadata say what they may be, see `parameters`.
 
     Raises:
         OptionError: If a parameter is out of its range.
@@ -63,6 +56,9 @@ class Style:
     lays_strokes: ClassVar[bool] = False
     """Whether the shader looks at `Scene.lay`: where strokes lie that go on from frame to frame."""
 
+    stays: ClassVar[bool] = False
+    """Whether it stays where it is while triangles move."""
+
     built_from: ClassVar[tuple[str, ...]] = ()
     """Parameters on which its texture depends: what draws it is made anew for other values, where
     all others are numbers that a frame is drawn with."""
@@ -72,13 +68,7 @@ class Style:
     if there are none."""
 
     def __post_init__(self) -> None:
-        name = type(self).__name__.lower()
-        for parameter in fields(self):
-            value = getattr(self, parameter.name)
-            problem = _problem(value, **parameter.metadata)
-            if problem:
-                shown = f"{value:g}" if isinstance(value, float) else value
-                raise OptionError(f"{name}:{parameter.name}={shown}: {problem}")
+        check_parameters(self)
 
     @property
     def is_opaque(self) -> bool:
@@ -89,6 +79,11 @@ class Style:
     def hides_below(self) -> bool:
         """Whether nothing of what lies below can be seen."""
         return self.is_opaque and self.blend == "normal"
+
+    @property
+    def is_sheet(self) -> bool:
+        """Whether it lies under everything else, and stays there while triangles move over it."""
+        return False
 
     @property
     def ground(self) -> str | None:
@@ -109,22 +104,3 @@ class Style:
             MediaError: If that picture cannot be read.
         """
         return None
-
-
-def _problem(
-    value: Any,
-    *,
-    range: tuple[float, float] | None = None,
-    choices: tuple[str, ...] | None = None,
-    form: str = "",
-    unit: str = "",
-    help: str = "",
-) -> str:
-    """What is wrong with a value, or nothing; see `Style` for the rest."""
-    if range is not None and not range[0] <= value <= range[1]:
-        return f"must lie between {range[0]:g} and {range[1]:g} {unit}".rstrip()
-    if choices is not None and value not in choices:
-        return f"choose from {', '.join(choices)}"
-    if form == "color":
-        parse_color(value)
-    return ""

@@ -16,7 +16,7 @@ from av.container import InputContainer, OutputContainer
 from stages.media.reading.container import DAMAGE, open_container, reason_of
 from stages.media.sound.channels import Channels, channels_of
 from stages.media.writing.codecs import Container
-from warp_kernels.errors import OptionError
+from warp_kernels.errors import MediaError, OptionError
 
 _TRIED_PACKETS = 50
 """Packets of the source that are converted once to see whether that works."""
@@ -81,6 +81,28 @@ def plan_audio(path: Path, container: Container, mode: str) -> AudioPlan | None:
         keeps = why.endswith(_LOSSLESS)
         encoder = _LOSSLESS if keeps else container.audio or "aac"
         return _plan_conversion(source, stream, container, encoder, [*notes, why])
+
+
+def plan_song(path: Path, container: Container) -> AudioPlan:
+    """Decide how another sound gets under the film, and try it on its beginning.
+
+    Args:
+        path: The sound.
+        container: The format of the output.
+
+    Raises:
+        MediaError: If it is not readable or holds no sound.
+        OptionError: If it cannot be converted.
+    """
+    with open_container(path) as source:
+        stream = best_audio(source)
+        if stream is None:
+            raise MediaError(path, "holds no sound", "give a file with sound")
+        notes = []
+        if len(source.streams.audio) > 1:
+            notes.append(f"{path.name}: of several sounds stream {stream.index} is taken")
+        encoder = container.audio or "aac"
+        return _plan_conversion(source, stream, container, encoder, notes)
 
 
 def best_audio(source: InputContainer) -> AudioStream | None:
@@ -203,7 +225,7 @@ def _plan_conversion(
     container: Container,
     encoder: str,
     notes: list[str],
-) -> AudioPlan | None:
+) -> AudioPlan:
     """The first order of channels, from as many as the sound has downwards, that works."""
     known = _LAYOUTS[encoder]
     heard, reason = _beginning(source, stream)

@@ -1,14 +1,34 @@
 """What decides how an output is written."""
 
 from dataclasses import dataclass, field
+from pathlib import Path
+
+from warp_kernels.errors import OptionError
 
 AUDIO_MODES = ("auto", "copy", "aac")
 """What may become of the sound."""
 
 
+MOST_OFFSET = 86400.0
+"""Seconds by which a sound may be moved; beyond a day a number is a mistake."""
+
+
+def sound_file(mode: str) -> Path | None:
+    """The file whose sound takes the place of the source's, if what `--audio` says is one.
+
+    Args:
+        mode: One of `AUDIO_MODES`, or a name.
+    """
+    return None if mode in AUDIO_MODES else Path(mode)
+
+
 @dataclass(frozen=True)
 class EncodeOptions:
-    """How an output is written."""
+    """How an output is written.
+
+    Raises:
+        OptionError: If a sound is moved that is not there, or too far.
+    """
 
     codec: str | None = field(
         default=None,
@@ -31,11 +51,36 @@ class EncodeOptions:
         default="auto",
         metadata={
             "help": "copy carries the source's audio packet by packet, aac makes AAC of it, auto "
-            "copies what players of the format play",
-            "choices": AUDIO_MODES,
+            "copies what players of the format play; a file takes its place, cut or filled up to "
+            "the film",
+            "metavar": "auto|copy|aac|FILE",
             "flag": "audio",
+        },
+    )
+    """One of `AUDIO_MODES`, or the name of a file whose sound takes the place of the source's."""
+    audio_offset: float = field(
+        default=0.0,
+        metadata={
+            "help": "how much later than the film the sound of --audio FILE begins, in seconds; "
+            "less than 0 to begin within it",
+            "metavar": "SECONDS",
         },
     )
     overwrite: bool = field(default=False, metadata={"help": "replace an existing output"})
     threads: int = 0
     """Threads of the encoder, those of the whole run; 0 for one per core."""
+
+    def __post_init__(self) -> None:
+        if not abs(self.audio_offset) <= MOST_OFFSET:
+            raise OptionError(
+                f"--audio-offset {self.audio_offset:g}: must lie within a day; give seconds"
+            )
+        if self.audio_offset and self.song is None:
+            raise OptionError(
+                f"--audio-offset {self.audio_offset:g}: moves the sound of --audio FILE; name one"
+            )
+
+    @property
+    def song(self) -> Path | None:
+        """The file whose sound takes the place of the source's, or None."""
+        return sound_file(self.audio_mode)

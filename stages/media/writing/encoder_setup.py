@@ -24,7 +24,9 @@ def settings_of(encoder: VideoCodec, options: EncodeOptions) -> dict[str, str]:
         options: What the user chose.
     """
     settings = dict(encoder.options)
-    if options.encoder_preset is not None:
+    if options.encoder_preset is None:
+        settings.update(encoder.tuning)
+    else:
         settings["preset"] = options.encoder_preset
     quality = encoder.quality if options.crf is None else options.crf
     if quality is not None:

@@ -12,7 +12,7 @@ from stages.media.expected_frames import expected_frames
 from stages.media.frame_range import FrameRange
 from stages.media.naming import SHAPES, STILL_ENDINGS, NumberedPattern
 from stages.media.reading.info import MediaInfo
-from stages.media.sound.audio_plan import AudioPlan, plan_audio
+from stages.media.sound.audio_plan import AudioPlan, plan_audio, plan_song
 from stages.media.writing.codecs import CONTAINERS, Container, VideoCodec, find_encoder
 from stages.media.writing.commit import output_error, remove_left_overs, true_place
 from stages.media.writing.encode_options import EncodeOptions
@@ -104,6 +104,23 @@ def check_output(
     return plan
 
 
+def keeps_alpha(path: str | Path, options: EncodeOptions) -> bool:
+    """Whether an output has room for transparency.
+
+    Args:
+        path: Output file, or a pattern of numbered stills.
+        options: How to write.
+
+    Raises:
+        OptionError: If there is no such codec.
+    """
+    ending = Path(path).suffix.lower()
+    if ending in CONTAINERS and NumberedPattern.parse(path) is None:
+        encoder = find_encoder(options.codec or CONTAINERS[ending].codec)
+        return encoder.alpha_format is not None and options.pixel_format is None
+    return ending not in (".jpg", ".jpeg")
+
+
 def _plan_video(
     target: Path, ending: str, source: MediaInfo, size: tuple[int, int], options: EncodeOptions
 ) -> OutputPlan:
@@ -119,9 +136,12 @@ def _plan_video(
     _check_quality(encoder, options)
     notes = []
     audio = None
-    if options.audio and source.audio_codec is not None:
+    if options.audio and (options.song is not None or source.audio_codec is not None):
         if container.audio is None:
             notes.append(f"{ending} holds no sound: the audio is left out")
+        elif options.song is not None:
+            audio = plan_song(options.song, container)
+            notes += audio.notes
         else:
             audio = plan_audio(source.path, container, options.audio_mode)
             notes += audio.notes if audio else []
@@ -177,7 +197,8 @@ def _plan_stills(
         )
     if options.crf is not None and not 0 <= options.crf <= 51:
         raise OptionError(f"crf {options.crf}: choose a value from 0 to 51")
-    notes = ["stills hold no sound: the audio is left out"] if source.audio_codec else []
+    has_sound = source.audio_codec is not None or options.song is not None
+    notes = ["stills hold no sound: the audio is left out"] if has_sound else []
     if not options.audio:
         notes = []
     return OutputPlan(target, pattern, None, None, "", size[0], size[1], None, tuple(notes))
@@ -225,7 +246,8 @@ def _check_place(
     if place.is_symlink() or (place.exists() and not place.is_file()):
         raise OutputError(plan.path, "is no regular file", "give the name of a file")
     existing = _existing(plan, frame_range)
-    if _is_source(plan, existing, source):
+    song = None if options.song is None else options.song.resolve()
+    if _is_source(plan, existing, source) or any(one.resolve() == song for one in existing):
         raise OutputError(plan.path, "is the input itself", "choose another name")
     if existing and not options.overwrite:
         raise OutputError(existing[0], "exists already", "choose another name or --overwrite")

@@ -1,6 +1,7 @@
 """One still picture, or numbered ones."""
 
 from fractions import Fraction
+from pathlib import Path
 
 import av
 import numpy as np
@@ -119,3 +120,20 @@ def _still_format(codec: str, channels: int, crf: int | None) -> str:
     if codec == "libwebp":
         return "yuva420p" if channels == 4 else "yuv420p"
     return "rgba" if channels == 4 else "rgb24"
+
+
+def write_picture(path: Path, pixels: np.ndarray) -> None:
+    """Write one picture as a still.
+
+    Args:
+        path: The file; its ending is one of `STILL_ENDINGS`.
+        pixels: Code values, [H, W, 3] uint8.
+
+    Raises:
+        OutputError: If it cannot be written.
+    """
+    try:
+        content = encode_still(pixels, _CODECS[path.suffix.lower()], None)
+    except DAMAGE as error:
+        raise output_error(path, error) from error
+    write_file(path, content)

@@ -16,6 +16,7 @@ from stages.media.frame_range import FrameRange
 from stages.media.reading.container import DAMAGE
 from stages.media.reading.info import MediaInfo
 from stages.media.sound.audio import AudioTrack, open_audio
+from stages.media.sound.song import SongTrack
 from stages.media.writing.commit import PendingFile, output_error
 from stages.media.writing.encode_options import EncodeOptions
 from stages.media.writing.encoder_setup import open_quietly, set_up, settings_of
@@ -59,6 +60,7 @@ class VideoWriter:
         self._pacing = Pacing(_SHORTEST.get(plan.container.format, 1))
         self._output: OutputContainer | None = None
         self._audio: AudioTrack | None = None
+        self._song: SongTrack | None = None
         self._start = Fraction(0)
         self._durations: dict[int | None, int] = {}
         self._last_time = Fraction(0)
@@ -104,14 +106,17 @@ class VideoWriter:
                 self._audio.finish(end if self._shifted else None)
                 if self._audio.problem:
                     self.notes.append(self._audio.problem)
+            if self._song is not None:
+                self._song.finish(end - self._start)
+                if self._song.problem:
+                    self.notes.append(self._song.problem)
             self._output.close()
             self._tell_dropped()
         except _FAILURES as error:
             self.abort()
             raise output_error(self._plan.path, error) from error
         finally:
-            if self._audio is not None:
-                self._audio.close()
+            self._close_sound()
         self._pending.commit()
 
     def abort(self) -> None:
@@ -119,9 +124,13 @@ class VideoWriter:
         with contextlib.suppress(*_FAILURES):
             if self._output is not None:
                 self._output.close()
-        if self._audio is not None:
-            self._audio.close()
+        self._close_sound()
         self._pending.discard()
+
+    def _close_sound(self) -> None:
+        for track in (self._audio, self._song):
+            if track is not None:
+                track.close()
 
     def _open(self, pixels: np.ndarray, time: Fraction, time_base: Fraction) -> None:
         plan = self._plan
@@ -134,8 +143,10 @@ class VideoWriter:
         options = {**plan.container.options, "fflags": "+bitexact"}
         if format_name in ("mp4", "mov"):
             ticks = self._clock.denominator
+            encoded = plan.audio is not None and self._options.song is not None
+            rate = plan.audio.rate if encoded and plan.audio else self._source.audio_rate
             options["video_track_timescale"] = str(ticks)
-            options["movie_timescale"] = str(_movie_clock(ticks, self._source.audio_rate))
+            options["movie_timescale"] = str(_movie_clock(ticks, rate))
         self._output = av.open(
             str(self._pending.path), "w", format=format_name, container_options=options
         )
@@ -143,7 +154,11 @@ class VideoWriter:
         self._palette = PaletteFilter() if pixel_format == "pal8" else None
         self._colors = YuvWriter("rgb24" if self._palette else pixel_format)
         self._start = time if self._shifted else Fraction(0)
-        if plan.audio is not None:
+        if plan.audio is not None and self._options.song is not None:
+            self._song = SongTrack(self._options.song, self._output, plan.audio)
+            offset = Fraction(self._options.audio_offset)
+            self._song.begin(self._source.start_time + offset - self._start)
+        elif plan.audio is not None:
             self._audio = open_audio(self._source.path, self._output, plan.audio)
             if self._audio is not None:
                 self._audio.begin(time if self._shifted else None)
@@ -237,6 +252,8 @@ class VideoWriter:
         self._durations[shown.pts] = duration
         if self._audio is not None:
             self._audio.advance(shown.time)
+        if self._song is not None:
+            self._song.advance(shown.time - self._start)
         self._mux(self._palette.push(frame) if self._palette else iter((frame,)))
 
     def _mux(self, frames: Iterator[VideoFrame | None]) -> None:

@@ -11,5 +11,4 @@ wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 @wp.func
 def source_color(scene: Scene, parameters: StyleParameters, sample: Sample, below: wp.vec4f) -> Ink:
     """The picture at the middle of the output pixel: where a border runs it is no softer."""
-    middle = wp.vec2i(scene.columns[sample.column], scene.rows[sample.row])
-    return full_ink(source_at(scene, middle))
+    return full_ink(source_at(scene, sample.middle))

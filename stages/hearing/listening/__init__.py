@@ -1,0 +1,1 @@
+"""Listening: from samples to beats, bars, onsets and envelopes."""
