@@ -136,6 +136,7 @@ def _refuse_time(look: Look, ending: str) -> None:
     for option, is_given in (
         ("--timeline", look.timeline is not None),
         ("--region", bool(look.regions)),
+        ("--move", bool(look.moves)),
         ("--blend", look.blend > 0),
     ):
         if is_given:
