@@ -119,6 +119,8 @@ class OutputKeywords(TypedDict, total=False):
     audio_mode: Name
     audio_offset: float
     overwrite: bool
+    svg_precision: int
+    svg_merge: bool
 
 
 class RenderKeywords(RangeKeywords, LookKeywords, OutputKeywords, DeviceKeywords, total=False):

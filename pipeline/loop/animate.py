@@ -10,7 +10,7 @@ from time import perf_counter
 
 import numpy as np
 
-from pipeline.look.drawing import check_drawing
+from pipeline.look.outputs import check_output_of
 from pipeline.look.region_masks import check_followed
 from pipeline.look.render_job import render_job
 from pipeline.loop.convert import convert
@@ -159,7 +159,7 @@ def _solved_then_drawn(job: Job, progress: Progress, runner: RangeRunner) -> Ani
     refuse_track(options.source)
     info = probe(options.source, read=options.read)
     check_followed(job, info)
-    check_drawing(job, info)
+    check_output_of(job, info)
     if output.track is None and output.resume:
         raise OptionError("--resume: nothing is left to go on with; name a --track FILE.mtrk")
     track = output.track or PendingFile(output.path).path.with_suffix(ENDING)

@@ -8,7 +8,9 @@ from contextlib import closing, nullcontext
 from time import perf_counter
 
 from pipeline.envelope import MeshFrom, Prepared, Solved
-from pipeline.look.drawing import Drawing, check_drawing
+from pipeline.look.drawing import Drawing
+from pipeline.look.exporting import Exporting
+from pipeline.look.outputs import check_output_of, open_drawing
 from pipeline.look.source_pictures import source_pictures
 from pipeline.loop.attention import Attention
 from pipeline.loop.edit_frames import check_edits
@@ -57,7 +59,7 @@ def convert(job: Job, fitted: ColorModel, progress: Progress) -> Animated:
         check_cuts(options.cuts, options.source, info)
         check_edits(options, info)
         if draws:
-            check_drawing(job, info)
+            check_output_of(job, info)
         device = Device(job.run.device, job.run.threads, progress.kernels)
         count = options.triangulate.refine.triangles
         step, factor = options.frame_range.step, options.course.focus
@@ -65,7 +67,7 @@ def convert(job: Job, fitted: ColorModel, progress: Progress) -> Animated:
         size = (info.width, info.height)
         maps = [WeightMap(str(m.file), size, options.frame_range, m.strength) for m in options.maps]
         # in this order all kernels of the job are compiled together
-        drawing = Drawing(job, info, device) if draws else None
+        drawing = open_drawing(job, info, device) if draws else None
         triangulator = triangulator_of(options, size, device, fitted)
         tally = Tally(progress, _expected(options, info))
         restarts: list[str] = []
@@ -178,7 +180,7 @@ def _recall(job: Job, tally: Tally, writer: Behind[Solved] | None) -> None:
 class _Writer:
     """Stores a solved frame, and draws it."""
 
-    def __init__(self, track: TrackWriter | None, drawing: Drawing | None) -> None:
+    def __init__(self, track: TrackWriter | None, drawing: Drawing | Exporting | None) -> None:
         self._track = track
         self._drawing = drawing
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 from time import perf_counter
 
 from pipeline.envelope import Solved, Standing
-from pipeline.look.drawing import Drawing, check_drawing
+from pipeline.look.outputs import check_output_of, open_drawing
 from pipeline.look.region_members import followed_shares
 from pipeline.look.rows_around import rows_around
 from pipeline.look.source_pictures import runs_of, source_pictures
@@ -43,12 +43,12 @@ def render(job: Job, track: TrackReader, info: MediaInfo, progress: Progress) ->
         TrackError: If the track is damaged.
     """
     begun = perf_counter()
-    check_drawing(job, info)
+    check_output_of(job, info)
     options, look = job.solve, job.look
     device = Device(job.run.device, job.run.threads, progress.kernels)
     shown = track.rows_in(options.frame_range)
     tally = Tally(progress, len(shown))
-    drawing = Drawing(job, info, device)
+    drawing = open_drawing(job, info, device)
     with device, drawing, Behind(drawing.draw, SOLVED_BEHIND) as writer:
         leading = _leading(track, shown, options.seam)
         for standings in ([leading] if leading else []) + [{}]:

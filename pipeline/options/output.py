@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from stages.exchange.exchange_options import ExchangeOptions
 from stages.media.writing.encode_options import EncodeOptions
 
 
@@ -14,6 +15,8 @@ class Output:
     """The picture or clip that is drawn; None where nothing is."""
     encode: EncodeOptions = field(default_factory=EncodeOptions)
     """How it is written."""
+    exchange: ExchangeOptions = field(default_factory=ExchangeOptions)
+    """How shapes are written."""
     track: Path | None = field(
         default=None,
         metadata={

@@ -13,6 +13,10 @@ from warp_kernels.errors import OptionError
 STILL_ENDINGS = frozenset({".png", ".jpg", ".jpeg", ".tif", ".tiff", ".webp"})
 """Endings of a still that can be written; anything FFmpeg knows can be read."""
 
+SHAPES = {".csv": True, ".npz": True, ".obj": False, ".ply": False, ".svg": False}
+"""Endings of what is written as shapes and numbers, see `stages.exchange`, and whether one file
+holds a clip."""
+
 _FIELD = re.compile(r"(?P<hashes>##+)|%0(?P<printf>\d+)d|\$F(?P<houdini>\d+)")
 
 

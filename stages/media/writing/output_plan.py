@@ -10,7 +10,7 @@ import av
 
 from stages.media.expected_frames import expected_frames
 from stages.media.frame_range import FrameRange
-from stages.media.naming import STILL_ENDINGS, NumberedPattern
+from stages.media.naming import SHAPES, STILL_ENDINGS, NumberedPattern
 from stages.media.reading.info import MediaInfo
 from stages.media.sound.audio_plan import AudioPlan, plan_audio, plan_song
 from stages.media.writing.codecs import CONTAINERS, Container, VideoCodec, find_encoder
@@ -93,12 +93,12 @@ def check_output(
         raise OptionError(f"size {size[0]}x{size[1]}: at least one pixel each way; choose a size")
     if ending in CONTAINERS and pattern is None:
         plan = _plan_video(target, ending, source, size, options)
-    elif ending in STILL_ENDINGS:
+    elif ending in STILL_ENDINGS or ending in SHAPES:
         plan = _plan_stills(target, pattern, source, size, options, frame_range)
     else:
         raise OptionError(
             f"output {path}: {'numbered ' if pattern else ''}files of ending {ending or '(none)'} "
-            f"cannot be written; use {' '.join([*CONTAINERS, *sorted(STILL_ENDINGS)])}"
+            f"cannot be written; use {' '.join([*CONTAINERS, *sorted(STILL_ENDINGS), *SHAPES])}"
         )
     _check_place(plan, source, options, frame_range)
     return plan
@@ -183,7 +183,8 @@ def _plan_stills(
     frame_range: FrameRange,
 ) -> OutputPlan:
     count = expected_frames(frame_range, source)
-    if pattern is None and count != 1 and not frame_range.is_single:
+    holds_clip = SHAPES.get(target.suffix.lower(), False)
+    if pattern is None and count != 1 and not frame_range.is_single and not holds_clip:
         stem, ending = target.stem, target.suffix
         raise OptionError(
             f"output {target}: one still cannot hold {count or 'many'} frames; "

@@ -1,0 +1,43 @@
+"""What draws the frames of a job: to pixels or to shapes, as the output's ending says."""
+
+from pipeline.look.drawing import Drawing, check_drawing
+from pipeline.look.exporting import Exporting, check_exporting
+from pipeline.options.job import Job
+from stages.exchange import is_exchange
+from stages.media import MediaInfo
+from warp_kernels.device.device import Device
+
+
+def open_drawing(job: Job, info: MediaInfo, device: Device) -> Drawing | Exporting:
+    """Open the output of a job.
+
+    Args:
+        job: Says how the output looks and how it is written.
+        info: The source; gives times, pixel aspect and sound.
+        device: Where kernels run.
+
+    Raises:
+        OptionError: If an option does not fit the source or the format.
+        OutputError: If the output cannot be written.
+    """
+    if job.output.path is not None and is_exchange(job.output.path):
+        return Exporting(job, info)
+    return Drawing(job, info, device)
+
+
+def check_output_of(job: Job, info: MediaInfo) -> None:
+    """Find out before any work is done whether the output of a job can be written.
+
+    Args:
+        job: Says how the output looks and how it is written.
+        info: The source.
+
+    Raises:
+        OptionError: If an option does not fit the source or the format.
+        MediaError: If a mask cannot be read.
+        OutputError: If the output cannot be written.
+    """
+    if job.output.path is not None and is_exchange(job.output.path):
+        check_exporting(job, info)
+    else:
+        check_drawing(job, info)

@@ -1,0 +1,34 @@
+"""What decides how shapes are written."""
+
+from dataclasses import dataclass, field
+
+from warp_kernels.errors import OptionError
+
+MAX_PRECISION = 6
+"""Decimals; more than positions have."""
+
+
+@dataclass(frozen=True)
+class ExchangeOptions:
+    """How shapes are written.
+
+    Raises:
+        OptionError: If an option has an impossible value.
+    """
+
+    svg_precision: int = field(
+        default=2,
+        metadata={"help": "decimals of positions in .svg: 2 is off by 0.005 px at most"},
+    )
+    """Decimals of positions."""
+    svg_merge: bool = field(
+        default=False,
+        metadata={"help": "make one path of neighbours that have the same colour in .svg"},
+    )
+    """Whether neighbours of one colour become one path."""
+
+    def __post_init__(self) -> None:
+        if not 0 <= self.svg_precision <= MAX_PRECISION:
+            raise OptionError(
+                f"--svg-precision {self.svg_precision}: must lie between 0 and {MAX_PRECISION}"
+            )

@@ -1,0 +1,42 @@
+"""What all frames of an output have in common."""
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+from stages.exchange.exchange_options import ExchangeOptions
+from stages.look.framing import Framing
+from warp_kernels.styles import Style
+
+
+@dataclass(frozen=True)
+class Film:
+    """The frames of an output, as far as they are known before there is one."""
+
+    name: str
+    """Of the source, without its folder and ending."""
+    ending: str
+    """Ending of the output, with its dot."""
+    size: tuple[int, int]
+    """Width and height of the source [px]."""
+    framing: Framing
+    """Where the picture lies on the output."""
+    background: tuple[float, float, float] | None
+    """What is seen where there is no picture [code values]; None for nothing."""
+    styles: tuple[Style, ...]
+    """Looks, bottom to top."""
+    degree: int
+    """Degree of the colours."""
+    rate: Fraction | None
+    """Frames per second, on the average; None for a still or if unknown."""
+    frames: int | None
+    """How many frames there are, as far as is known."""
+    options: ExchangeOptions
+    """How shapes are written."""
+
+    @property
+    def scale(self) -> tuple[float, float]:
+        """Size of the output relative to the source, across and down."""
+        across, down = (
+            drawn / side for drawn, side in zip(self.framing.picture, self.size, strict=True)
+        )
+        return across, down

@@ -1,0 +1,1 @@
+"""SVG: real shapes, layers and ids, in the units of the picture."""
