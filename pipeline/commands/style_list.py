@@ -62,7 +62,9 @@ def _extended() -> Iterator[tuple[str, Registry[Any]]]:
     """Options besides `--style` and `--move` to which installed packages add members."""
     for option in job_options():
         registry = option.registry
-        if registry is not None and registry not in (STYLES, MOVES) and registry.added:
+        # by identity: equal registries are those of equal members, which would all be imported
+        is_other = registry is not STYLES and registry is not MOVES
+        if registry is not None and is_other and registry.added:
             yield f"--{option.flag}", registry
 
 

@@ -12,7 +12,7 @@ EYE_GAIN, EYE_RADII = 5.0, (0.12, 0.08)
 """The same over each eye; along the line through the eyes and across it [face sizes]."""
 MOUTH_GAIN, MOUTH_RADII = 4.0, (0.16, 0.1)
 """The same over the mouth."""
-DETAILED, RICHEST = 40.0, 2.6
+DETAILED, RICHEST = 40.0, 2.0
 """A face that more mean triangles than this would cover counts the more, with the root of their
 number, up to so many times: each of them brings less there, and of such a face there is more. Its
 eyes and mouth, which have triangles enough, count as much less."""
