@@ -1,9 +1,10 @@
 """Triangles in linear colours.
 
-A gradient of SVG has one direction, and each channel of a triangle has its own. So three layers, each
-of one channel, are added up: `screen` of colours that have no channel in common is their sum. Over
-them lies one gradient a triangle, the nearest, for programs that know no blend modes. Those that do
-multiply it with black and add that, so that it is not seen; browsers are told not to draw it at all.
+A gradient of SVG has one direction, and each channel of a triangle has its own. So three layers,
+each of one channel, are added up: `screen` of colours that have no channel in common is their sum.
+Over them lies one gradient a triangle, the nearest, for programs that know no blend modes. Those
+that do multiply it with black and add that, so that it is not seen; browsers are told not to draw
+it at all.
 
 Source: W3C, Compositing and Blending Level 1, Sec. 10.1; CSS Conditional Rules Level 3, Sec. 6.
 """
@@ -19,7 +20,7 @@ from stages.exchange.svg.text import elements, hexes, ids_of, lines_of, path_dat
 from warp_kernels.styles import Style
 
 DECIMALS = 3
-"""Of the places of colours, at least: where colours are steep a hundredth of a px is a code value."""
+"""Of the places of colours, at least: in steep ones a hundredth of a px can be a code value."""
 HIDING = "<style>@supports (mix-blend-mode:screen){.plain{display:none}}</style>"
 """Saves programs that understand it the drawing of what would not be seen."""
 
@@ -36,7 +37,7 @@ def gradient(style: Style, figure: Figure, film: Film, name: str) -> Layer:
     shown = elements('<path id="%s" fill="%s" d="%s"/>', ids, fills, data)
     error = float(np.sqrt((errors * mesh.areas).sum() / mesh.areas.sum()))
     if options.svg_gradients == "plain":
-        note = f"one gradient for all channels of a triangle is off by about {error:.0f} code values"
+        note = f"single gradients are off by about {error:.0f} code values (root mean square)"
         return Layer([ground_of(figure), *shown], definitions, (note,))
     lines = ['<g style="isolation:isolate">']
     for channel, letter in enumerate("rgb"):
