@@ -7,6 +7,7 @@ from pipeline.commands.pipes import shown_name
 from pipeline.track import TrackReader, join
 from pipeline.track.resume import check_track_name
 from stages.media.writing.alone import alone
+from stages.media.writing.place import check_folder
 from warp_kernels.errors import OptionError, OutputError
 
 
@@ -32,6 +33,7 @@ def join_tracks(parts: Sequence[Path], output: Path, *, overwrite: bool) -> str:
     with alone(output):
         if output.exists() and not overwrite:
             raise OutputError(output, "exists already", "choose another name or --overwrite")
+        check_folder(output)
         join(parts, output)
     with TrackReader(output) as track:
         rows = track.rows

@@ -6,6 +6,7 @@ import platform
 import re
 import secrets
 import shutil
+import stat
 from pathlib import Path
 
 from warp_kernels.device.file_lock import locked
@@ -50,11 +51,15 @@ class PendingFile:
                 os.fsync(descriptor)
             finally:
                 os.close(descriptor)
+            refuse_special(self.target)
             os.replace(self.path, self.target)
             _sync_folder(self.target.parent)
         except OSError as error:
             self.discard()
             raise output_error(self.target, error) from error
+        except OutputError:
+            self.discard()
+            raise
 
     def discard(self) -> None:
         """Remove the temporary file, if there is one."""
@@ -68,6 +73,26 @@ def true_place(target: Path) -> Path:
         target: Its name.
     """
     return Path(os.path.realpath(target)) if target.is_symlink() else target
+
+
+def refuse_special(target: Path) -> None:
+    """Refuse to put a file where a device, a pipe or a socket is: it would take that away.
+
+    Args:
+        target: Name of the file.
+
+    Raises:
+        OutputError: If something else than a file stands there.
+    """
+    try:
+        mode = target.stat().st_mode
+    except OSError:  # nothing is there, or a link that leads nowhere or in a circle
+        if not true_place(target).is_symlink():
+            return
+    else:
+        if stat.S_ISREG(mode) or stat.S_ISDIR(mode):  # nothing is moved onto a folder
+            return
+    raise OutputError(target, "is no regular file", "give the name of a file")
 
 
 def remove_left_overs(folder: Path) -> None:
