@@ -26,6 +26,7 @@ import trimotion  # noqa: E402
 
 STACKS = {
     "flat": ["flat"],
+    "gradient": ["gradient"],
     "edges": ["flat", "edges"],
     "shrink": ["paper:color=#111,grain=0,sheets=0", "shrink"],
     "circles": ["paper:color=#111,grain=0,sheets=0", "circles"],
@@ -190,7 +191,8 @@ def main() -> None:
     parser.add_argument("--scales", nargs="*", type=int, default=[1, 3])
     parser.add_argument("--keep", type=Path)
     given = parser.parse_args()
-    seams()
+    if not given.tracks:
+        seams()
     with tempfile.TemporaryDirectory() as folder:
         tracks = given.tracks
         if not tracks:

@@ -16,7 +16,7 @@ from pipeline.options.nearest import nearest
 from pipeline.track.plain_values import CLASS, UnknownNameError, from_plain, to_plain
 from stages.hand import EDITS, Edit
 from stages.media.text_file import read_text
-from stages.media.writing.commit import PendingFile
+from stages.media.writing.commit import write_file
 from warp_kernels.errors import MediaError, OptionError
 
 KIND = "edit"
@@ -104,13 +104,7 @@ def write_log(log: EditLog, path: Path) -> None:
     Raises:
         OutputError: If it cannot be written.
     """
-    pending = PendingFile(path)
-    try:
-        pending.path.write_text(as_json_lines(log), encoding="utf-8")
-    except BaseException:
-        pending.discard()
-        raise
-    pending.commit()
+    write_file(path, as_json_lines(log).encode())
 
 
 class _LineError(ValueError):

@@ -121,6 +121,7 @@ class OutputKeywords(TypedDict, total=False):
     overwrite: bool
     svg_precision: int
     svg_merge: bool
+    svg_gradients: str
 
 
 class RenderKeywords(RangeKeywords, LookKeywords, OutputKeywords, DeviceKeywords, total=False):

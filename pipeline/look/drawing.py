@@ -18,6 +18,7 @@ from stages.look.strokes import Strokes
 from stages.look.transitions import faded
 from stages.masks.regions import Mask, open_masks
 from stages.media import MediaInfo, check_output, open_encoder
+from stages.metrics.flashes import FlashWatch
 from stages.toning.choices import Choices
 from warp_kernels.device.device import Device
 from warp_kernels.scene.stroke_lay import Lay
@@ -56,6 +57,8 @@ class Drawing:
             output.encode,
             options.frame_range,
         )
+        # stills are looked at one by one
+        self._watch = None if self._encoder.plan.container is None else FlashWatch()
         # Where every frame starts anew, triangles of the same number have nothing in common.
         self._blend = 0 if options.independent else look.blend
         self._smoother = Smoother(0.0 if options.independent else look.smooth)
@@ -70,7 +73,9 @@ class Drawing:
     def notes(self) -> list[str]:
         """Choices that were made, one sentence each; complete after the block."""
         fitted = _fitted(self._framing)
-        return [*self._hidden, *fitted, *self._stage.notes, *self._encoder.notes]
+        found = None if self._watch is None else self._watch.found
+        flashes = [] if found is None else [found.note]
+        return [*self._hidden, *fitted, *self._stage.notes, *self._encoder.notes, *flashes]
 
     def draw(self, solved: Solved) -> None:
         """Draw and encode a frame, or an earlier one that has been waiting for it."""
@@ -101,6 +106,8 @@ class Drawing:
             leading, partner = self._leading.pop(index, None), self._seam.partner_of(index)
             if leading is not None and partner is not None:
                 pixels = faded(pixels, leading, partner[1])
+            if self._watch is not None:
+                self._watch.add(pixels, shown - self._start_time)
             self._encoder.write(pixels, snapshot.pts, snapshot.time_base, snapshot.frame_index)
 
     def _looks_at(self, solved: Solved) -> Looks:

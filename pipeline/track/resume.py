@@ -12,7 +12,7 @@ from pipeline.track.agreement import differing_flags
 from pipeline.track.header import plain_options
 from pipeline.track.schema import ENDING
 from stages.media import FrameRange, MediaInfo
-from stages.media.writing.commit import output_error, remove_left_overs, true_place
+from stages.media.writing.place import check_folder, check_name
 from stages.snapshot import Snapshot
 from stages.validate import InvalidMeshError, assert_valid
 from warp_kernels.color_model import ColorModel
@@ -126,14 +126,11 @@ def check_track_name(path: Path) -> None:
 
     Raises:
         OptionError: If it does not end as tracks do.
-        OutputError: If its folder is not there.
+        OutputError: If its folder is not there, or something stands there that is no file.
     """
     if path.suffix.lower() != ENDING:
         raise OptionError(f"{path}: a mesh track ends in {ENDING}; choose such a name")
-    if not path.parent.is_dir():
-        raise OutputError(path, f"there is no folder {path.parent}", "create it first")
-    if path.is_dir():
-        raise OutputError(path, "is a folder", "give the name of a file")
+    check_name(path)
 
 
 def check_track_place(path: Path, output: Output) -> None:
@@ -153,13 +150,7 @@ def check_track_place(path: Path, output: Output) -> None:
     check_track_name(path)
     if os.path.lexists(path) and not (output.resume or output.overwrite):
         raise OutputError(path, "exists already", "choose another name, --resume or --overwrite")
-    remove_left_overs(true_place(path).parent)
-    probe = path.with_name(f".trimotion-{os.getpid()}.test")
-    try:
-        probe.touch()
-        probe.unlink()
-    except OSError as error:
-        raise output_error(path, error) from error
+    check_folder(path)
 
 
 def _check_agrees(path: Path, options: SolveOptions, fitted: ColorModel, header: Header) -> None:

@@ -7,6 +7,9 @@ from warp_kernels.errors import OptionError
 MAX_PRECISION = 6
 """Decimals; more than positions have."""
 
+GRADIENTS = ("exact", "plain")
+"""How linear colours can be written."""
+
 
 @dataclass(frozen=True)
 class ExchangeOptions:
@@ -27,8 +30,22 @@ class ExchangeOptions:
     )
     """Whether neighbours of one colour become one path."""
 
+    svg_gradients: str = field(
+        default="exact",
+        metadata={
+            "help": "gradients in .svg: exact adds up three layers, one for each channel, plain is "
+            "the nearest single gradient",
+            "choices": GRADIENTS,
+        },
+    )
+    """How linear colours are written."""
+
     def __post_init__(self) -> None:
         if not 0 <= self.svg_precision <= MAX_PRECISION:
             raise OptionError(
                 f"--svg-precision {self.svg_precision}: must lie between 0 and {MAX_PRECISION}"
+            )
+        if self.svg_gradients not in GRADIENTS:
+            raise OptionError(
+                f"--svg-gradients {self.svg_gradients}: choose from {', '.join(GRADIENTS)}"
             )

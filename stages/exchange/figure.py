@@ -38,3 +38,9 @@ class Figure:
     def colors(self) -> np.ndarray:
         """Mean colours, as they are drawn [code values], [T, 3] uint8."""
         return np.rint(self.paint.colors).astype(np.uint8)
+
+    @cached_property
+    def mean_color(self) -> np.ndarray:
+        """That of the whole picture [code values], [3]."""
+        areas = self.mesh.areas[:, None]
+        return np.asarray((self.paint.colors * areas).sum(axis=0) / areas.sum())

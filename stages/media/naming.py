@@ -88,13 +88,13 @@ class NumberedPattern:
         """
         return self.folder / f"{self.prefix}{number:0{self.digits}d}{self.suffix}"
 
-    def numbers(self, *, links: bool = False) -> list[int]:
+    def numbers(self, *, anything: bool = False) -> list[int]:
         """Frame numbers that exist in the folder, in ascending order.
 
         Args:
-            links: Whether links that lead nowhere count, too.
+            anything: Whether what is no file counts, too: links that lead nowhere, pipes, folders.
         """
-        stills = self._stills(links)
+        stills = self._stills(anything)
         return sorted(number for number, name in stills if name == self.path_for(number).name)
 
     def left_out(self) -> list[str]:
@@ -112,13 +112,13 @@ class NumberedPattern:
                 return f"{self.prefix}{field}{self.suffix}"
         return None
 
-    def _stills(self, links: bool = False) -> list[tuple[int, str]]:
+    def _stills(self, anything: bool = False) -> list[tuple[int, str]]:
         """Numbers and names of the files that have any digits in the field's place."""
         if not self.folder.is_dir():
             return []
         shape = re.compile(re.escape(self.prefix) + r"([0-9]{1,20})" + re.escape(self.suffix))
         entries = [entry for entry in self.folder.iterdir() if shape.fullmatch(entry.name)]
-        names = [e.name for e in entries if e.is_file() or (links and e.is_symlink())]
+        names = [entry.name for entry in entries if anything or entry.is_file()]
         return [(int(match[1]), match[0]) for match in map(shape.fullmatch, names) if match]
 
 

@@ -16,6 +16,7 @@ from stages.hearing.listening.spectrum import FRAMES
 from stages.look.sheet_sound import sheet_of_sound
 from stages.media.naming import STILL_ENDINGS
 from stages.media.writing.commit import true_place
+from stages.media.writing.place import check_folder, check_name
 from stages.media.writing.still_writer import write_picture
 from warp_kernels.errors import OptionError, OutputError
 
@@ -83,16 +84,15 @@ def _outputs(arguments: argparse.Namespace) -> dict[str, Path]:
         if kind == "plot" and path.suffix.lower() not in STILL_ENDINGS:
             raise OptionError(f"--plot {path}: is one picture; name it .png or .jpg")
         place = true_place(path)
-        if not place.parent.is_dir():
-            raise OutputError(path, f"there is no folder {place.parent}", "create it first")
-        if place.is_dir():
-            raise OutputError(path, "is a folder", "give the name of a file")
+        check_name(path)
         if any(place.resolve() == one.resolve() for one in inputs):
             raise OutputError(path, "is the input itself", "choose another name")
         if place.exists() and not arguments.overwrite:
             raise OutputError(path, "exists already", "choose another name or --overwrite")
     if len({path.resolve() for path in found.values()}) < len(found):
         raise OptionError("-o, --labels and --plot: are one file; give them names of their own")
+    for path in found.values():
+        check_folder(path)
     return found
 
 

@@ -35,9 +35,14 @@ class Svg(Format):
 
     @classmethod
     def check(cls, film: Film) -> None:
-        """As every format; paper must be smooth."""
+        """As every format; paper must be smooth, and gradients straight."""
         super().check(film)
         for style in film.styles:
+            if style.degree > 0 and film.degree > 1:
+                raise OptionError(
+                    f"--color quadratic: {film.ending} holds no colours that bend; use --color "
+                    "linear, --style flat, or .png"
+                )
             grain = getattr(style, "grain", 0.0)
             if grain > 0.0:
                 name = STYLES.name_of(type(style))

@@ -3,6 +3,8 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
+import numpy as np
+
 from stages.exchange.figure import Figure
 from stages.exchange.film import Film
 from stages.exchange.svg.text import hexes
@@ -29,6 +31,7 @@ LAYERS = {
     "circles": "stages.exchange.svg.discs:circles",
     "edges": "stages.exchange.svg.lines:edges",
     "flat": "stages.exchange.svg.faces:flat",
+    "gradient": "stages.exchange.svg.gradients:gradient",
     "incircles": "stages.exchange.svg.discs:incircles",
     "paper": "stages.exchange.svg.faces:paper",
     "shrink": "stages.exchange.svg.rounded:shrunk",
@@ -55,7 +58,15 @@ def ground_of(figure: Figure) -> str:
     Args:
         figure: The frame.
     """
-    mesh = figure.mesh
-    mean = (figure.paint.colors * mesh.areas[:, None]).sum(axis=0) / mesh.areas.sum()
-    color = hexes(mean.round().astype("uint8")[None])[0]
-    return f'<rect class="ground" width="{mesh.width}" height="{mesh.height}" fill="{color}"/>'
+    return sheet_of(figure, figure.mean_color)
+
+
+def sheet_of(figure: Figure, color: np.ndarray) -> str:
+    """A sheet of the picture's size.
+
+    Args:
+        figure: The frame.
+        color: Its colour [code values], [3].
+    """
+    mesh, shown = figure.mesh, hexes(np.rint(color).astype(np.uint8)[None])[0]
+    return f'<rect class="ground" width="{mesh.width}" height="{mesh.height}" fill="{shown}"/>'

@@ -6,14 +6,19 @@ import platform
 import re
 import secrets
 import shutil
+import stat
 from pathlib import Path
 
+from warp_kernels.device.file_lock import locked
 from warp_kernels.device.memory import MORE_MEMORY, is_out_of_memory
 from warp_kernels.errors import OutputError
 
 _HOST = re.sub(r"[^A-Za-z0-9]", "_", platform.node())[:40] or "host"
 """This machine: the numbers of its processes say nothing about those of others on a shared disk."""
 _LEFT_OVER = re.compile(rf"\.trimotion-{_HOST}-(?P<process>\d+)-[0-9a-f]{{12}}\..*")
+
+LOCK = re.compile(r"\.trimotion-[0-9a-f]{16}\.lock")
+"""Names of the locks of outputs; one that nobody holds is left by a run that was killed."""
 
 
 class PendingFile:
@@ -46,11 +51,15 @@ class PendingFile:
                 os.fsync(descriptor)
             finally:
                 os.close(descriptor)
+            refuse_special(self.target)
             os.replace(self.path, self.target)
             _sync_folder(self.target.parent)
         except OSError as error:
             self.discard()
             raise output_error(self.target, error) from error
+        except OutputError:
+            self.discard()
+            raise
 
     def discard(self) -> None:
         """Remove the temporary file, if there is one."""
@@ -66,8 +75,28 @@ def true_place(target: Path) -> Path:
     return Path(os.path.realpath(target)) if target.is_symlink() else target
 
 
+def refuse_special(target: Path) -> None:
+    """Refuse to put a file where a device, a pipe or a socket is: it would take that away.
+
+    Args:
+        target: Name of the file.
+
+    Raises:
+        OutputError: If something else than a file stands there.
+    """
+    try:
+        mode = target.stat().st_mode
+    except OSError:  # nothing is there, or a link that leads nowhere or in a circle
+        if not true_place(target).is_symlink():
+            return
+    else:
+        if stat.S_ISREG(mode) or stat.S_ISDIR(mode):  # nothing is moved onto a folder
+            return
+    raise OutputError(target, "is no regular file", "give the name of a file")
+
+
 def remove_left_overs(folder: Path) -> None:
-    """Remove the temporary files of processes of this machine that were killed.
+    """Remove the temporary files of processes of this machine that were killed, and their locks.
 
     Args:
         folder: Where an output will be written.
@@ -83,6 +112,10 @@ def remove_left_overs(folder: Path) -> None:
         if match is not None and not _lives(int(match["process"])):
             with contextlib.suppress(OSError):  # another run removed it, or we may not
                 shutil.rmtree(entry) if entry.is_dir() else entry.unlink()
+        elif LOCK.fullmatch(entry.name):
+            with contextlib.suppress(OSError), entry.open("r+b") as file:
+                if locked(file):
+                    entry.unlink()
 
 
 def _lives(process: int) -> bool:

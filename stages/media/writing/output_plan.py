@@ -14,9 +14,9 @@ from stages.media.naming import SHAPES, STILL_ENDINGS, NumberedPattern
 from stages.media.reading.info import MediaInfo
 from stages.media.sound.audio_plan import AudioPlan, plan_audio, plan_song
 from stages.media.writing.codecs import CONTAINERS, Container, VideoCodec, find_encoder
-from stages.media.writing.commit import output_error, remove_left_overs, true_place
 from stages.media.writing.encode_options import EncodeOptions
 from stages.media.writing.encoder_setup import try_encoder
+from stages.media.writing.place import check_folder, check_name
 from warp_kernels.errors import OptionError, OutputError
 
 
@@ -237,33 +237,22 @@ def _check_quality(encoder: VideoCodec, options: EncodeOptions) -> None:
 def _check_place(
     plan: OutputPlan, source: MediaInfo, options: EncodeOptions, frame_range: FrameRange
 ) -> None:
-    place = true_place(plan.path)
-    folder = place.parent
-    if not folder.is_dir():
-        raise OutputError(plan.path, f"there is no folder {folder}", "create it first")
-    if place.is_dir():
-        raise OutputError(plan.path, "is a folder", "give the name of a file")
-    if place.is_symlink() or (place.exists() and not place.is_file()):
-        raise OutputError(plan.path, "is no regular file", "give the name of a file")
+    check_name(plan.path)
     existing = _existing(plan, frame_range)
     song = None if options.song is None else options.song.resolve()
     if _is_source(plan, existing, source) or any(one.resolve() == song for one in existing):
         raise OutputError(plan.path, "is the input itself", "choose another name")
     if existing and not options.overwrite:
         raise OutputError(existing[0], "exists already", "choose another name or --overwrite")
-    remove_left_overs(folder)
-    probe = folder / f".trimotion-{os.getpid()}.test"
-    try:
-        probe.touch()
-        probe.unlink()
-    except OSError as error:
-        raise output_error(plan.path, error) from error
+    for one in existing:
+        check_name(one)
+    check_folder(plan.path)
 
 
 def _existing(plan: OutputPlan, frame_range: FrameRange) -> list[Path]:
     if plan.pattern is None:
         return [plan.path] if os.path.lexists(plan.path) else []
-    wanted = (n for n in plan.pattern.numbers(links=True) if frame_range.holds(n, Fraction(0)))
+    wanted = (n for n in plan.pattern.numbers(anything=True) if frame_range.holds(n, Fraction(0)))
     return [plan.pattern.path_for(number) for number in wanted]
 
 

@@ -1,0 +1,48 @@
+"""Whether a file can come to a place, found out before any work is done."""
+
+import os
+from pathlib import Path
+
+from stages.media.writing.commit import (
+    output_error,
+    refuse_special,
+    remove_left_overs,
+    true_place,
+)
+from warp_kernels.errors import OutputError
+
+
+def check_name(path: Path) -> None:
+    """Refuse places at which no file can be: nothing is written to find that out.
+
+    Args:
+        path: The file to be.
+
+    Raises:
+        OutputError: If its folder is not there, or something stands there that is no file.
+    """
+    place = true_place(path)
+    if not place.parent.is_dir():
+        raise OutputError(path, f"there is no folder {place.parent}", "create it first")
+    if place.is_dir():
+        raise OutputError(path, "is a folder", "give the name of a file")
+    refuse_special(path)
+
+
+def check_folder(path: Path) -> None:
+    """Try whether its folder takes a file, and clear away what killed runs left there.
+
+    Args:
+        path: The file to be.
+
+    Raises:
+        OutputError: If the folder takes none.
+    """
+    folder = true_place(path).parent
+    remove_left_overs(folder)
+    probe = folder / f".trimotion-{os.getpid()}.test"
+    try:
+        probe.touch()
+        probe.unlink()
+    except OSError as error:
+        raise output_error(path, error) from error

@@ -1,0 +1,110 @@
+"""SVG says in shapes what styles draw in pixels."""
+
+import re
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+
+import numpy as np
+import pytest
+from meshes import random_mesh
+from PIL import Image
+
+import trimotion
+from stages.exchange.svg.slopes import Slopes, best_slopes, channel_slopes
+from trimotion import OptionError
+from warp_kernels.drawing.paint import Paint
+
+SVG = "{http://www.w3.org/2000/svg}"
+
+
+@pytest.fixture(scope="module")
+def track(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Three frames of 96 x 64 in 24 triangles, linear colours."""
+    folder = tmp_path_factory.mktemp("svg")
+    rng = np.random.default_rng(5)
+    blobs = rng.integers(0, 256, (4, 6, 3), dtype=np.uint8)
+    for frame in range(3):
+        picture = Image.fromarray(np.roll(blobs, frame, axis=1)).resize((96, 64))
+        picture.save(folder / f"in_{frame:02}.png")
+    target = folder / "in.mtrk"
+    trimotion.solve(folder / "in_##.png", target, triangles=24, iterations=3, color="linear")
+    return target
+
+
+def written(track: Path, name: str, **options: object) -> Path:
+    target = track.parent / name
+    trimotion.render(track, target, overwrite=True, **options)  # type: ignore[arg-type]
+    return target
+
+
+def linear_paint(seed: int) -> Paint:
+    """Steep and even colours, some of them limited."""
+    mesh, rng = random_mesh(seed=seed), np.random.default_rng(seed)
+    count = mesh.triangle_count
+    colors = rng.uniform(60, 200, (count, 3))
+    gradients = rng.normal(0, 3, (count, 2, 3)) * rng.integers(0, 2, (count, 1, 3))
+    limits = np.stack([colors - rng.uniform(0, 60, (count, 3)), colors + 50], axis=1)
+    return Paint(colors, gradients, None, limits, mesh.corners, mesh.triangle_ids)
+
+
+def shown(slopes: Slopes, points: np.ndarray) -> np.ndarray:
+    """What a renderer shows of gradients at a point of each."""
+    along = slopes.ends - slopes.begins
+    square = np.maximum((along * along).sum(axis=1), 1e-30)
+    share = np.clip(((points - slopes.begins) * along).sum(axis=1) / square, 0.0, 1.0)
+    first = slopes.first.astype(float)
+    return first + share[:, None] * (slopes.last - first)
+
+
+def linear_colors(paint: Paint, points: np.ndarray) -> np.ndarray:
+    away = points - paint.corners.mean(axis=1)
+    colors = paint.colors + np.einsum("ti,tic->tc", away, paint.gradients)
+    return np.clip(colors, paint.limits[:, 0], paint.limits[:, 1])
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_gradients_of_channels_add_up_to_the_colours(seed: int) -> None:
+    paint, rng = linear_paint(seed), np.random.default_rng(seed)
+    for _ in range(8):
+        weights = rng.dirichlet(np.ones(3), len(paint.ids))
+        points = np.einsum("tk,tki->ti", weights, paint.corners)
+        whole = sum(shown(channel_slopes(paint, channel), points) for channel in range(3))
+        assert np.abs(whole - linear_colors(paint, points)).max() < 1.0
+
+
+def test_a_single_gradient_is_the_nearest_one() -> None:
+    """No other direction leaves less: residuals of regressions on positions along each."""
+    paint = linear_paint(3)
+    away = paint.corners - paint.corners.mean(axis=1, keepdims=True)
+    spread = np.einsum("tki,tkj->tij", away, away) / 12
+    turns = np.linspace(0, np.pi, 721)
+    directions = np.stack([np.cos(turns), np.sin(turns)], axis=1)
+    both = np.einsum("tij,tjc->tic", spread, paint.gradients)
+    whole = np.einsum("tic,tic->t", paint.gradients, both)
+    told = (np.einsum("ni,tic->tnc", directions, both) ** 2).sum(axis=2)
+    told /= np.einsum("ni,tij,nj->tn", directions, spread, directions)
+    least = np.maximum(whole - told.max(axis=1), 0.0) / 3
+    slopes, errors = best_slopes(paint)
+    np.testing.assert_allclose(errors, least, rtol=0.02, atol=1e-3 * whole.max() / 3)
+    ends = np.stack([slopes.begins, slopes.ends], axis=1)
+    along = np.einsum("tki,ti->tk", away, slopes.ends - slopes.begins)
+    reach = np.einsum(
+        "tki,ti->tk", ends - paint.corners.mean(axis=1, keepdims=True), slopes.ends - slopes.begins
+    )
+    np.testing.assert_allclose(reach[:, 1] - reach[:, 0], np.ptp(along, axis=1), rtol=1e-6)
+
+
+def test_gradients_add_up_and_hide_the_single_ones(track: Path) -> None:
+    text = written(track, "g.svg", styles="gradient", frames=0).read_text()
+    root = ElementTree.fromstring(text)
+    ids = [element.get("id") for element in root.iter() if element.get("id")]
+    assert len(ids) == len(set(ids))
+    named = set(re.findall(r"url\(#([^)]+)\)", text))
+    assert named
+    assert named <= set(ids)
+    assert text.count("mix-blend-mode:screen") == 4  # two channels, the single ones, and the rule
+    plain = written(track, "p.svg", styles="gradient", frames=0, svg_gradients="plain").read_text()
+    assert "mix-blend-mode" not in plain
+    assert 3 * len(plain) < len(text)
+    with pytest.raises(OptionError, match="choose from exact, plain"):
+        written(track, "q.svg", styles="gradient", frames=0, svg_gradients="both")
