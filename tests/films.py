@@ -43,9 +43,7 @@ def film_of(ending: str, style: str = "flat", frames: int | None = None, **optio
 
 def figures_of(snapshots: Iterable[Snapshot], shot: int = 0) -> list[Figure]:
     """Snapshots as frames at 25 per second."""
-    return [
-        Figure(one, shot, Fraction(one.frame_index) / RATE, paint_of(one)) for one in snapshots
-    ]
+    return [Figure(one, shot, Fraction(one.frame_index) / RATE, paint_of(one)) for one in snapshots]
 
 
 def mixed_figures(seed: int = 4) -> list[Figure]:
@@ -65,7 +63,7 @@ def graded_figures(seed: int = 5) -> list[Figure]:
     """Two frames of one topology in linear colours."""
     rng = np.random.default_rng(seed)
     mesh = random_mesh(seed)
-    slopes = rng.normal(0, 1, (2, mesh.triangle_count, 3, 3)) + np.array([120, 0, 0])
+    slopes = rng.normal(0, 0.3, (2, mesh.triangle_count, 3, 3)) + np.array([120, 0, 0])
     return figures_of(snapshot_with(mesh, one, n, LINEAR) for n, one in enumerate(slopes))
 
 

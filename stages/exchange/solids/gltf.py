@@ -14,7 +14,7 @@ from stages.exchange.solids.corners import HELD, corners_of, refuse_stacks
 from stages.exchange.solids.glb import MOST_BYTES, Block
 from stages.exchange.solids.gltf_animation import POINTER, VISIBILITY, animation_of, mesh_of
 from stages.exchange.solids.linear_light import linear_light
-from stages.exchange.solids.runs import Pose, Runs
+from stages.exchange.solids.runs import MeshPose, MeshRuns
 
 METRES = 0.001
 """Length of a pixel: a picture becomes as large as a print of it."""
@@ -44,7 +44,7 @@ class Gltf(Format):
 
     def __init__(self, film: Film) -> None:
         super().__init__(film)
-        self._runs = Runs()
+        self._runs = MeshRuns()
 
     @classmethod
     def check(cls, film: Film) -> None:
@@ -60,7 +60,7 @@ class Gltf(Format):
         codes = np.rint(corners.colors) if self.film.styles[-1].degree == 0 else corners.colors
         points, light = corners.points.reshape(-1, 3), linear_light(codes).reshape(-1, 3)
         rows = np.arange(3 * count).reshape(-1, 3)
-        self._runs.add(figure, rows, Pose(figure.index, figure.time, points, light))
+        self._runs.add(figure, rows, MeshPose(figure.index, figure.time, points, light))
 
     def save(self, path: Path) -> None:
         """Write them."""

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from stages.exchange.solids.glb import Block
-from stages.exchange.solids.runs import Run
+from stages.exchange.solids.runs import MeshRun
 
 VISIBILITY, POINTER = "KHR_node_visibility", "KHR_animation_pointer"
 """Extensions by which a node is shown for a time."""
@@ -14,7 +14,7 @@ CELL = 256
 """Points that are blended count from multiples of its inverse [1 / px]; see `mesh_of`."""
 
 
-def mesh_of(block: Block, run: Run) -> dict[str, Any]:
+def mesh_of(block: Block, run: MeshRun) -> dict[str, Any]:
     """A mesh, with a shape to blend for each pose if there are several.
 
     A program adds a share of every shape to the mesh, in float32. The mesh lies at multiples of
@@ -52,7 +52,7 @@ def mesh_of(block: Block, run: Run) -> dict[str, Any]:
     return mesh
 
 
-def animation_of(block: Block, runs: list[Run], step: Fraction) -> dict[str, Any]:
+def animation_of(block: Block, runs: list[MeshRun], step: Fraction) -> dict[str, Any]:
     """The clip: each run is seen from its first frame to that of the next one.
 
     Args:
@@ -66,7 +66,7 @@ def animation_of(block: Block, runs: list[Run], step: Fraction) -> dict[str, Any
     channels: list[dict[str, Any]] = []
     samplers: list[dict[str, Any]] = []
 
-    def animate(times: int, values: int, interpolation: str, target: dict[str, Any]) -> None:
+    def _animate(times: int, values: int, interpolation: str, target: dict[str, Any]) -> None:
         channels.append({"sampler": len(samplers), "target": target})
         samplers.append({"input": times, "output": values, "interpolation": interpolation})
 
@@ -79,11 +79,11 @@ def animation_of(block: Block, runs: list[Run], step: Fraction) -> dict[str, Any
         scales = np.repeat(seen[:, None], 3, axis=1).astype(np.float32)
         shown = {"pointer": f"/nodes/{node}/extensions/{VISIBILITY}/visible"}
         hidden = {"path": "pointer", "extensions": {POINTER: shown}}
-        animate(times, block.add(scales, "scales"), "STEP", {"node": node, "path": "scale"})
-        animate(times, block.add(seen, "visibility"), "STEP", hidden)
+        _animate(times, block.add(scales, "scales"), "STEP", {"node": node, "path": "scale"})
+        _animate(times, block.add(seen, "visibility"), "STEP", hidden)
         if len(run.poses) > 1:
             moments = np.array([pose.time - start for pose in run.poses], np.float32)
             weights = block.add(np.eye(len(moments), dtype=np.float32).ravel(), "weights")
             times = block.add(moments, "times", bounded=True)
-            animate(times, weights, "LINEAR", {"node": node, "path": "weights"})
+            _animate(times, weights, "LINEAR", {"node": node, "path": "weights"})
     return {"name": "clip", "channels": channels, "samplers": samplers}

@@ -13,7 +13,7 @@ and which of n poses is seen takes n^2 numbers."""
 
 
 @dataclass(frozen=True, eq=False)
-class Pose:
+class MeshPose:
     """How the mesh of a run looks in a frame."""
 
     frame: int
@@ -27,12 +27,12 @@ class Pose:
 
 
 @dataclass(frozen=True, eq=False)
-class Run:
+class MeshRun:
     """A mesh whose points and colours change, and nothing else."""
 
     triangles: np.ndarray
     """Points of the corners, counter-clockwise, [T, 3]."""
-    poses: list[Pose]
+    poses: list[MeshPose]
     """Frame by frame."""
 
     @property
@@ -42,7 +42,7 @@ class Run:
         return f"frame_{first}" if first == last else f"frames_{first}_{last}"
 
 
-class Runs:
+class MeshRuns:
     """Divides a clip into runs.
 
     Triangles that come, go or change their corners end a run, and so does a cut: between two frames
@@ -50,11 +50,11 @@ class Runs:
     """
 
     def __init__(self) -> None:
-        self.found: list[Run] = []
+        self.found: list[MeshRun] = []
         """The runs, earliest first."""
         self._key: tuple[int, np.ndarray, np.ndarray] | None = None
 
-    def add(self, figure: Figure, triangles: np.ndarray, pose: Pose) -> None:
+    def add(self, figure: Figure, triangles: np.ndarray, pose: MeshPose) -> None:
         """Take a frame.
 
         Args:
@@ -67,7 +67,7 @@ class Runs:
         if self._goes_on(key) and len(self.found[-1].poses) < MOST_POSES:
             self.found[-1].poses.append(pose)
         else:
-            self.found.append(Run(triangles, [pose]))
+            self.found.append(MeshRun(triangles, [pose]))
         self._key = key
 
     def _goes_on(self, key: tuple[int, np.ndarray, np.ndarray]) -> bool:
