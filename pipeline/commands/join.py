@@ -6,6 +6,7 @@ from pathlib import Path
 from pipeline.commands.pipes import shown_name
 from pipeline.track import TrackReader, join
 from pipeline.track.resume import check_track_name
+from stages.media.writing.alone import alone
 from stages.media.writing.place import check_folder
 from warp_kernels.errors import OptionError, OutputError
 
@@ -29,10 +30,11 @@ def join_tracks(parts: Sequence[Path], output: Path, *, overwrite: bool) -> str:
     check_track_name(output)
     if output.resolve() in {part.resolve() for part in parts}:
         raise OptionError(f"{output}: is one of the tracks that are joined; choose another name")
-    if output.exists() and not overwrite:
-        raise OutputError(output, "exists already", "choose another name or --overwrite")
-    check_folder(output)
-    join(parts, output)
+    with alone(output):
+        if output.exists() and not overwrite:
+            raise OutputError(output, "exists already", "choose another name or --overwrite")
+        check_folder(output)
+        join(parts, output)
     with TrackReader(output) as track:
         rows = track.rows
     joined = "1 track" if len(parts) == 1 else f"{len(parts)} tracks"

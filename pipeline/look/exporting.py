@@ -15,6 +15,7 @@ from stages.look.paint import paint_of
 from stages.look.strokes import Strokes
 from stages.media import MediaInfo, check_output
 from stages.media.expected_frames import expected_frames
+from stages.media.naming import NumberedPattern
 from stages.media.writing.output_plan import OutputPlan
 from stages.toning.choices import Choices
 from stages.toning.tone import toned
@@ -113,7 +114,7 @@ def check_exporting(job: Job, info: MediaInfo) -> tuple[OutputPlan, Film]:
     _refuse_time(look, ending)
     picture = (info.width, info.height)
     framing = look.framing_for(picture, info.sample_aspect)
-    frames = job.solve.frame_range
+    frames, is_numbered = job.solve.frame_range, bool(NumberedPattern.parse(job.output.path))
     film = Film(
         name=info.path.stem,
         ending=ending,
@@ -123,7 +124,7 @@ def check_exporting(job: Job, info: MediaInfo) -> tuple[OutputPlan, Film]:
         styles=look.shown_styles(model),
         degree=look.fitted(model).degree,
         rate=None if info.kind == "image" else info.average_rate,
-        frames=1 if frames.is_single else expected_frames(frames, info),
+        frames=1 if frames.is_single or is_numbered else expected_frames(frames, info),
         options=job.output.exchange,
     )
     format_of(job.output.path).check(film)

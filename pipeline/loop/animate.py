@@ -19,7 +19,7 @@ from pipeline.loop.parts_folder import make_folder, parts_of, remove_folder
 from pipeline.loop.plan import Plan, plan
 from pipeline.loop.processes import InProcesses
 from pipeline.loop.ranges import InThisProcess, Part, RangeRunner, Work
-from pipeline.loop.render import render
+from pipeline.loop.render import drawn
 from pipeline.loop.result import Animated
 from pipeline.loop.seam import with_seam
 from pipeline.options.job import Job
@@ -32,6 +32,7 @@ from pipeline.track import TrackReader, join, refuse_track
 from pipeline.track.resume import check_track_place
 from pipeline.track.schema import ENDING
 from stages.media import FrameRange, probe
+from stages.media.writing.alone import alone
 from stages.media.writing.commit import PendingFile
 from warp_kernels.color_model import ColorModel
 from warp_kernels.errors import OptionError
@@ -57,9 +58,10 @@ def animate(job: Job, progress: Progress, runner: RangeRunner | None = None) -> 
     runner = runner or runner_of(job.run)
     job = with_course(job)
     job = replace(job, solve=with_seam(job.solve))
-    if runner.places > 1 or job.look.followed or job.solve.seam.over:
-        return _solved_then_drawn(job, progress, runner)
-    return with_unreached(job.solve, convert(job, job.fitted, progress))
+    with alone(job.output.path, job.output.track):
+        if runner.places > 1 or job.look.followed or job.solve.seam.over:
+            return _solved_then_drawn(job, progress, runner)
+        return with_unreached(job.solve, convert(job, job.fitted, progress))
 
 
 def solve(
@@ -87,6 +89,19 @@ def solve(
         TrackError: If the track to go on with cannot be.
     """
     runner, options = runner or runner_of(run), with_seam(options)
+    with alone(output.track):
+        return _solved(options, output, run, progress, fitted, runner)
+
+
+def _solved(
+    options: SolveOptions,
+    output: Output,
+    run: Run,
+    progress: Progress,
+    fitted: ColorModel | None,
+    runner: RangeRunner,
+) -> Animated:
+    """Solve, in one go or in ranges."""
     work = Work(options, replace(run, jobs=1), fitted or options.model)
     planned = _planned(options, output, runner)
     if planned is not None:
@@ -165,11 +180,11 @@ def _solved_then_drawn(job: Job, progress: Progress, runner: RangeRunner) -> Ani
     track = output.track or PendingFile(output.path).path.with_suffix(ENDING)
     try:
         kept = replace(output, track=track)
-        solved = solve(options, kept, job.run, both, job.fitted, runner)
+        solved = _solved(options, kept, job.run, both, job.fitted, runner)
         with TrackReader(track) as reader:
-            drawn = render_job(reader, wanted, job.look, output, job.run, options.source)
+            made = render_job(reader, wanted, job.look, output, job.run, options.source)
             both.second_half()
-            result = render(drawn.job, reader, drawn.info, both)
+            result = drawn(made.job, reader, made.info, both)
     finally:
         if output.track is None:
             track.unlink(missing_ok=True)

@@ -13,11 +13,15 @@ from typing import Any
 from pipeline.loop.ranges import InThisProcess, Part, Together, Work
 from pipeline.loop.result import Animated
 from pipeline.progress import Progress
+from stages.media.writing.alone import alone
 from warp_kernels.device.kernel_cache import settle_cache
 from warp_kernels.errors import TrimotionError
 
 PATIENCE = 0.5
 """How often the processes are looked after [s]."""
+ORPHANS = 60.0
+"""How long to wait for what a killed run left: its processes end after the frame that they are at
+[s]."""
 
 
 class PartError(TrimotionError):
@@ -174,7 +178,9 @@ def _work(work: Work, tasks: Any, reports: Any, parent: int) -> None:
     try:
         while True:
             number, part = _next_task(tasks, parent)
-            reports.put(("part", number, work.solve(part, _Reporter(reports, parent))))
+            with alone(part.output.track, patience=ORPHANS):
+                result = work.solve(part, _Reporter(reports, parent))
+            reports.put(("part", number, result))
     except TrimotionError as error:
         reports.put(("error", str(error), error.exit_code))
     except KeyboardInterrupt:

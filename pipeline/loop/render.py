@@ -21,6 +21,7 @@ from pipeline.progress import Progress
 from pipeline.timeline.timeline import Timeline
 from pipeline.track import FrameRow, TrackReader
 from stages.media import FrameRange, MediaInfo, open_decoder
+from stages.media.writing.alone import alone
 from stages.motion.morph import morphed
 from stages.snapshot import Snapshot
 from warp_kernels.color_model import ColorModel
@@ -42,6 +43,12 @@ def render(job: Job, track: TrackReader, info: MediaInfo, progress: Progress) ->
         OutputError: If the output cannot be written.
         TrackError: If the track is damaged.
     """
+    with alone(job.output.path):
+        return drawn(job, track, info, progress)
+
+
+def drawn(job: Job, track: TrackReader, info: MediaInfo, progress: Progress) -> Animated:
+    """Draw a track, as `render` does, for one who sees to it that nobody else writes there."""
     begun = perf_counter()
     check_output_of(job, info)
     options, look = job.solve, job.look

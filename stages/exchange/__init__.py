@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 FORMATS = {
     ".csv": "stages.exchange.table:Table",
+    ".glb": "stages.exchange.solids.gltf:Gltf",
     ".npz": "stages.exchange.arrays:Arrays",
     ".obj": "stages.exchange.solids.obj:Obj",
     ".ply": "stages.exchange.solids.ply:Ply",

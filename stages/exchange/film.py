@@ -29,7 +29,7 @@ class Film:
     rate: Fraction | None
     """Frames per second, on the average; None for a still or if unknown."""
     frames: int | None
-    """How many frames there are, as far as is known."""
+    """How many frames a file holds, as far as is known."""
     options: ExchangeOptions
     """How shapes are written."""
 

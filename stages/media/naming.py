@@ -13,7 +13,14 @@ from warp_kernels.errors import OptionError
 STILL_ENDINGS = frozenset({".png", ".jpg", ".jpeg", ".tif", ".tiff", ".webp"})
 """Endings of a still that can be written; anything FFmpeg knows can be read."""
 
-SHAPES = {".csv": True, ".npz": True, ".obj": False, ".ply": False, ".svg": False}
+SHAPES = {
+    ".csv": True,
+    ".glb": True,
+    ".npz": True,
+    ".obj": False,
+    ".ply": False,
+    ".svg": False,
+}
 """Endings of what is written as shapes and numbers, see `stages.exchange`, and whether one file
 holds a clip."""
 

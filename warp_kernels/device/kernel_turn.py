@@ -4,7 +4,8 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import IO
+
+from warp_kernels.device.file_lock import locked
 
 LOCK = "trimotion.lock"
 """A file beside the compiled kernels that the process has locked that compiles. The system lets go
@@ -31,35 +32,7 @@ def waited_turn(folder: Path, look: Callable[[], object]) -> Iterator[None]:
         yield
         return
     with file:
-        while not _locked(file):
+        while not locked(file):
             look()
             time.sleep(PATIENCE)
         yield  # closing the file lets go of the lock
-
-
-def _locked(file: IO[bytes]) -> bool:
-    """Lock a file; False if another process has."""
-    try:
-        import fcntl
-    except ImportError:  # Windows
-        return _locked_on_windows(file)
-    try:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        return False
-    except OSError:  # a file system that knows no locks
-        pass
-    return True
-
-
-def _locked_on_windows(file: IO[bytes]) -> bool:
-    """The same for the first byte of the file."""
-    import msvcrt
-
-    lock = getattr(msvcrt, "locking")  # noqa: B009
-    try:
-        file.seek(0)
-        lock(file.fileno(), getattr(msvcrt, "LK_NBLCK"), 1)  # noqa: B009
-    except OSError:
-        return False
-    return True

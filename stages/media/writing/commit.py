@@ -9,12 +9,16 @@ import shutil
 import stat
 from pathlib import Path
 
+from warp_kernels.device.file_lock import locked
 from warp_kernels.device.memory import MORE_MEMORY, is_out_of_memory
 from warp_kernels.errors import OutputError
 
 _HOST = re.sub(r"[^A-Za-z0-9]", "_", platform.node())[:40] or "host"
 """This machine: the numbers of its processes say nothing about those of others on a shared disk."""
 _LEFT_OVER = re.compile(rf"\.trimotion-{_HOST}-(?P<process>\d+)-[0-9a-f]{{12}}\..*")
+
+LOCK = re.compile(r"\.trimotion-[0-9a-f]{16}\.lock")
+"""Names of the locks of outputs; one that nobody holds is left by a run that was killed."""
 
 
 class PendingFile:
@@ -92,7 +96,7 @@ def refuse_special(target: Path) -> None:
 
 
 def remove_left_overs(folder: Path) -> None:
-    """Remove the temporary files of processes of this machine that were killed.
+    """Remove the temporary files of processes of this machine that were killed, and their locks.
 
     Args:
         folder: Where an output will be written.
@@ -108,6 +112,10 @@ def remove_left_overs(folder: Path) -> None:
         if match is not None and not _lives(int(match["process"])):
             with contextlib.suppress(OSError):  # another run removed it, or we may not
                 shutil.rmtree(entry) if entry.is_dir() else entry.unlink()
+        elif LOCK.fullmatch(entry.name):
+            with contextlib.suppress(OSError), entry.open("r+b") as file:
+                if locked(file):
+                    entry.unlink()
 
 
 def _lives(process: int) -> bool:
