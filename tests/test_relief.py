@@ -8,8 +8,9 @@ import pytest
 from PIL import Image
 
 from stages.exchange import format_of
-from stages.exchange.relief import Relief, means_around, sampled
+from stages.exchange.relief import Relief
 from stages.exchange.solids.corners import corners_of, vertex_places
+from stages.exchange.solids.heights import means_around, sampled
 from tests.films import figures_of, film_of
 from tests.meshes import HEIGHT, WIDTH, random_mesh, two_triangles
 from tests.snapshots import snapshot_with

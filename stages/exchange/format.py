@@ -6,7 +6,7 @@ from typing import ClassVar
 
 from stages.exchange.figure import Figure
 from stages.exchange.film import Film
-from stages.exchange.relief import depth_of
+from stages.exchange.solids.heights import depth_of
 from warp_kernels.errors import OptionError
 from warp_kernels.styles import STYLES
 

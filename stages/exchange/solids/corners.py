@@ -6,6 +6,7 @@ import numpy as np
 
 from stages.exchange.figure import Figure
 from stages.exchange.film import Film
+from stages.exchange.solids.heights import heights_of
 from stages.masks.gray import LUMA
 from warp_kernels.errors import OptionError
 
@@ -41,7 +42,7 @@ def vertex_places(figure: Figure, film: Film) -> np.ndarray:
     x, y = mesh.vertices.T
     z = np.zeros_like(x)
     if relief is not None:
-        z = relief.heights(mesh, corner_colors(figure, film) @ np.array(LUMA) / 255.0)
+        z = heights_of(relief, mesh, corner_colors(figure, film) @ np.array(LUMA) / 255.0)
     return np.stack([x, film.size[1] - y, z], axis=1).astype(np.float32)
 
 
