@@ -123,6 +123,7 @@ class OutputKeywords(TypedDict, total=False):
     svg_merge: bool
     svg_gradients: str
     svg_mm: float
+    relief: str | None
 
 
 class RenderKeywords(RangeKeywords, LookKeywords, OutputKeywords, DeviceKeywords, total=False):
