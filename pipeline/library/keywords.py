@@ -122,6 +122,7 @@ class OutputKeywords(TypedDict, total=False):
     svg_precision: int
     svg_merge: bool
     svg_gradients: str
+    relief: str | None
 
 
 class RenderKeywords(RangeKeywords, LookKeywords, OutputKeywords, DeviceKeywords, total=False):

@@ -6,6 +6,7 @@ from pipeline.options.job import Job
 from stages.exchange import is_exchange
 from stages.media import MediaInfo
 from warp_kernels.device.device import Device
+from warp_kernels.errors import OptionError
 
 
 def open_drawing(job: Job, info: MediaInfo, device: Device) -> Drawing | Exporting:
@@ -40,4 +41,8 @@ def check_output_of(job: Job, info: MediaInfo) -> None:
     if job.output.path is not None and is_exchange(job.output.path):
         check_exporting(job, info)
     else:
+        if job.output.path is not None and job.output.exchange.relief is not None:
+            raise OptionError(
+                f"--relief: {job.output.path} has no heights; use .glb, .obj, .ply or .usd"
+            )
         check_drawing(job, info)

@@ -1,7 +1,9 @@
 """What decides how shapes are written."""
 
 from dataclasses import dataclass, field
+from functools import cached_property
 
+from stages.exchange.relief import Relief
 from warp_kernels.errors import OptionError
 
 MAX_PRECISION = 6
@@ -40,7 +42,23 @@ class ExchangeOptions:
     )
     """How linear colours are written."""
 
+    relief: str | None = field(
+        default=None,
+        metadata={
+            "help": "brightness, or a picture of depth, as height in 3D formats: from black to "
+            "white so many of the picture's longer side",
+            "metavar": "X[:FILE]",
+        },
+    )
+    """Heights in 3D formats, as `Relief.parse` reads them; None for flat ones."""
+
+    @cached_property
+    def heights(self) -> Relief | None:
+        """The relief that is wanted, or None."""
+        return None if self.relief is None else Relief.parse(self.relief)
+
     def __post_init__(self) -> None:
+        _ = self.heights
         if not 0 <= self.svg_precision <= MAX_PRECISION:
             raise OptionError(
                 f"--svg-precision {self.svg_precision}: must lie between 0 and {MAX_PRECISION}"

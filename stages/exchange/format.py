@@ -6,6 +6,7 @@ from typing import ClassVar
 
 from stages.exchange.figure import Figure
 from stages.exchange.film import Film
+from stages.exchange.solids.heights import depth_of
 from warp_kernels.errors import OptionError
 from warp_kernels.styles import STYLES
 
@@ -27,6 +28,8 @@ class Format:
     is_drawn: ClassVar[bool] = False
     """Whether it has a size on paper or screen, so that `--size` and what goes with it mean
     something; else positions are those in the source."""
+    has_heights: ClassVar[bool] = False
+    """Whether it has a third dimension."""
 
     def __init__(self, film: Film) -> None:
         self.film = film
@@ -49,6 +52,13 @@ class Format:
                 f"--size, --scale: positions in {film.ending} are pixels of the source; leave them "
                 "out"
             )
+        relief = film.options.heights
+        if relief is not None and not cls.has_heights:
+            raise OptionError(
+                f"--relief: {film.ending} has no heights; use .glb, .obj, .ply or .usd"
+            )
+        if relief is not None and relief.path is not None:
+            depth_of(relief.path)
         if film.degree > cls.most_degree:
             raise OptionError(
                 f"--color quadratic: {film.ending} holds no colours that bend; use --color linear, "

@@ -6,6 +6,8 @@ import numpy as np
 
 from stages.exchange.figure import Figure
 from stages.exchange.film import Film
+from stages.exchange.solids.heights import heights_of
+from stages.masks.gray import LUMA
 from warp_kernels.errors import OptionError
 
 HELD = ("flat", "gradient")
@@ -29,10 +31,19 @@ def corners_of(figure: Figure, film: Film) -> Corners:
         figure: The frame.
         film: Tells whether colours are even or gradients.
     """
-    flat = figure.mesh.corners[:, [0, 2, 1]]
-    height = np.zeros((*flat.shape[:2], 1))
-    points = np.concatenate([flat[..., :1], film.size[1] - flat[..., 1:], height], axis=2)
-    return Corners(points.astype(np.float32), corner_colors(figure, film)[:, [0, 2, 1]])
+    places, colors = vertex_places(figure, film), corner_colors(figure, film)
+    points = places.take(figure.mesh.triangles[:, [0, 2, 1]], axis=0)
+    return Corners(points, colors[:, [0, 2, 1]])
+
+
+def vertex_places(figure: Figure, film: Film) -> np.ndarray:
+    """Positions of the vertices, right, up and towards the viewer [px], [V, 3] float32."""
+    mesh, relief = figure.mesh, film.options.heights
+    x, y = mesh.vertices.T
+    z = np.zeros_like(x)
+    if relief is not None:
+        z = heights_of(relief, mesh, corner_colors(figure, film) @ np.array(LUMA) / 255.0)
+    return np.stack([x, film.size[1] - y, z], axis=1).astype(np.float32)
 
 
 def corner_colors(figure: Figure, film: Film) -> np.ndarray:
