@@ -176,7 +176,7 @@ REFUSED = [
     ("a.svg", {"styles": "paper"}, "paper:grain=0.4: .svg cannot hold a grain"),
     ("a.svg", {"styles": "flat", "blend": 2}, "blend: .svg cannot hold it"),
     ("a.svg", {"styles": "flat", "moves": "jitter"}, "move"),
-    ("a.svg", {"styles": "flat", "frames": "0-1"}, "write a_####.svg"),
+    ("a.ply", {"styles": "flat", "frames": "0-1"}, "write a_####.ply"),
     ("a.ply", {"styles": "edges"}, "edges: .ply cannot hold it"),
     ("a.ply", {"styles": ["flat", "gradient"]}, "one opaque style"),
     ("a.npz", {"styles": "flat", "scale": 2}, "pixels of the source"),

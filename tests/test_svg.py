@@ -2,6 +2,8 @@
 
 import re
 import xml.etree.ElementTree as ElementTree
+from dataclasses import replace
+from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
@@ -10,13 +12,22 @@ from meshes import random_mesh
 from PIL import Image
 
 import trimotion
+from stages.exchange.exchange_options import ExchangeOptions
+from stages.exchange.figure import Figure
+from stages.exchange.film import Film
+from stages.exchange.svg.document import Svg
 from stages.exchange.svg.hatch import hatched
 from stages.exchange.svg.slopes import Slopes, best_slopes, channel_slopes
+from stages.look.framing import Framing
+from stages.look.paint import paint_of
+from stages.snapshot import Snapshot
 from trimotion import OptionError
+from warp_kernels.color_model import CONSTANT
 from warp_kernels.drawing.paint import Paint
 from warp_kernels.scene.stroke_lay import own_lay
+from warp_kernels.styles.flat import Flat
 
-SVG = "{http://www.w3.org/2000/svg}"
+DOCUMENT = "{http://www.w3.org/2000/svg}"
 
 
 @pytest.fixture(scope="module")
@@ -144,15 +155,15 @@ def test_strokes_are_as_dark_as_those_that_are_drawn(track: Path, style: str) ->
     root = ElementTree.parse(written(track, "t.svg", styles=style, frames=0)).getroot()
     height, width = drawn.shape[:2]
     picture = np.zeros(3)
-    papers = {p.get("id"): p for p in root.iter(f"{SVG}path") if p.get("fill")}
+    papers = {p.get("id"): p for p in root.iter(f"{DOCUMENT}path") if p.get("fill")}
     one = next(iter(trimotion.open_track(track)))
     corners = one.vertices[one.triangles]
     first, second = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     areas = 0.5 * np.abs(first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0])
-    pens = {g.get("id"): g for g in root.iter(f"{SVG}g") if g.get("stroke-width")}
+    pens = {g.get("id"): g for g in root.iter(f"{DOCUMENT}g") if g.get("stroke-width")}
     strokes = {}
     for group in pens.values():
-        for path in group.iter(f"{SVG}path"):
+        for path in group.iter(f"{DOCUMENT}path"):
             strokes[path.get("id")] = (path.get("stroke") or group.get("stroke"), path.get("d"))
     pen_width = float(next(iter(pens.values())).get("stroke-width") or 0)
     name = style.partition(":")[0]
@@ -182,8 +193,43 @@ def test_a_pen_a_layer_in_millimetres(track: Path) -> None:
     assert (root.get("width"), root.get("height")) == ("300mm", "200mm")
     assert root.get("viewBox") == "0 0 96 64"
     label = "{http://www.inkscape.org/namespaces/inkscape}label"
-    pens = [group for group in root.iter(f"{SVG}g") if group.get("stroke")]
+    pens = [group for group in root.iter(f"{DOCUMENT}g") if group.get("stroke")]
     assert [pen.get(label) for pen in pens] == ["1 #102030"]
-    assert not list(root.iter(f"{SVG}rect"))
+    assert not list(root.iter(f"{DOCUMENT}rect"))
     with pytest.raises(OptionError, match="between 0"):
         written(track, "n.svg", styles=style, frames=0, svg_mm=-1)
+
+
+def test_frames_are_shown_in_turn_for_ever(track: Path) -> None:
+    text = written(track, "film.svg", styles="gradient").read_text()
+    assert "<script" not in text
+    root = ElementTree.fromstring(text)
+    ids = [element.get("id") for element in root.iter() if element.get("id")]
+    assert len(ids) == len(set(ids))
+    assert set(re.findall(r"url\(#([^)]+)\)", text)) <= set(ids)
+    frames = root.findall(f"{DOCUMENT}g")
+    assert [frame.get("display") for frame in frames] == [None, "none", "none"]
+    moves = [frame[0] for frame in frames]
+    assert {move.get("repeatCount") for move in moves} == {"indefinite"}
+    assert len({move.get("dur") for move in moves}) == 1
+    for share in np.linspace(0, 1, 31)[:-1]:
+        shown = []
+        for move in moves:
+            places = np.array((move.get("keyTimes") or "").split(";"), float)
+            assert places[0] == 0
+            values = (move.get("values") or "").split(";")
+            shown.append(values[np.searchsorted(places, share, side="right") - 1])
+        assert shown.count("inline") == 1
+
+
+def test_a_film_that_would_be_too_large_is_told_at_its_second_frame() -> None:
+    mesh, framing = random_mesh(seed=8), Framing((64, 64), (64, 64), None)
+    film = Film("in", ".svg", (64, 64), framing, None, (Flat(),), 0, None, 10**5, ExchangeOptions())
+    one, count = Svg(film), mesh.triangle_count
+    colors, zero = np.full((count, 3, 1), 90.0), np.zeros(count)
+    snapshot = Snapshot(0, 0, Fraction(1), mesh, CONSTANT, colors, zero, zero.astype(np.int64))
+    one.add(Figure(snapshot, 0, Fraction(0), paint_of(snapshot)))
+    later = replace(snapshot, frame_index=1)
+    with pytest.raises(OptionError, match=r"100000 frames make .* MB.*--triangles") as caught:
+        one.add(Figure(later, 0, Fraction(1), paint_of(later)))
+    assert "\n" not in str(caught.value)

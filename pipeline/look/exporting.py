@@ -47,11 +47,13 @@ class Exporting:
         self._lays_strokes = is_followed and any(style.lays_strokes for style in film.styles)
         self._strokes: Strokes | None = None
         self._shot: int | None = None
+        self._is_mixed = False
 
     @property
     def notes(self) -> list[str]:
         """Choices that were made, one sentence each; complete after the block."""
-        return [*self._hidden, *self._writer.notes]
+        mixed = ["--loop: shapes are not mixed, so that the film jumps where it begins anew"]
+        return [*self._hidden, *(mixed if self._is_mixed else []), *self._writer.notes]
 
     def draw(self, solved: Solved) -> None:
         """Write a frame, or an earlier one that has been waiting for it."""
@@ -61,13 +63,16 @@ class Exporting:
     def _write(self, solved: Solved) -> None:
         snapshot = solved.snapshot
         paint = self._painted(solved)
-        if solved.is_shown:
+        if solved.blended_into is not None:
+            self._is_mixed = True
+        elif solved.is_shown:
             time = snapshot.pts * snapshot.time_base - self._start_time
             self._writer.write(Figure(snapshot, solved.shot, time, paint))
 
     def _painted(self, solved: Solved) -> Paint:
         """What styles see of a frame: strokes and colours go on from the one before."""
-        mesh, begins = solved.snapshot.mesh, solved.shot != self._shot or not self._is_followed
+        mesh, is_other = solved.snapshot.mesh, solved.begins or solved.shot != self._shot
+        begins = is_other or not self._is_followed
         self._shot = solved.shot
         if self._lays_strokes:
             known = None if begins else self._strokes

@@ -19,7 +19,7 @@ SHAPES = {
     ".npz": True,
     ".obj": False,
     ".ply": False,
-    ".svg": False,
+    ".svg": True,
 }
 """Endings of what is written as shapes and numbers, see `stages.exchange`, and whether one file
 holds a clip."""

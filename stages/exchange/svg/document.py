@@ -1,5 +1,6 @@
-"""A frame as an SVG document."""
+"""Frames as an SVG document: one is a still, more are shown in turn."""
 
+from fractions import Fraction
 from pathlib import Path
 from typing import ClassVar
 from xml.sax.saxutils import escape
@@ -9,8 +10,9 @@ import numpy as np
 from stages.exchange.figure import Figure
 from stages.exchange.film import Film
 from stages.exchange.format import Format
-from stages.exchange.svg.layers import LAYERS, Layer, layer_of
+from stages.exchange.svg.layers import LAYERS, layer_of
 from stages.exchange.svg.text import hexes
+from stages.exchange.svg.turns import too_large, turns
 from warp_kernels.errors import OptionError
 from warp_kernels.styles import STYLES
 
@@ -21,7 +23,7 @@ NAMESPACES = (
 
 
 class Svg(Format):
-    """One frame: a layer for each style, bottom to top.
+    """A layer for each style, bottom to top; of each frame, where there are several.
 
     Source: W3C, Scalable Vector Graphics (SVG) 1.1; layers as Inkscape marks them.
     """
@@ -31,7 +33,10 @@ class Svg(Format):
 
     def __init__(self, film: Film) -> None:
         super().__init__(film)
-        self._text = ""
+        self._frames: list[tuple[int, Fraction]] = []
+        self._definitions: list[str] = []
+        self._shown: list[list[str]] = []
+        self._size = 0
 
     @classmethod
     def check(cls, film: Film) -> None:
@@ -52,16 +57,50 @@ class Svg(Format):
                 )
 
     def add(self, figure: Figure) -> None:
-        """Take the frame."""
+        """Take a frame.
+
+        Raises:
+            OptionError: If the document becomes too large.
+        """
         film = self.film
-        named = list(zip(film.styles, names_of(film), strict=True))
+        # ids are those of a still in the first frame, and have its number in each later one
+        begin = f"frame{figure.index}-" if self._frames else ""
+        names = [begin + name for name in names_of(film)]
+        named = list(zip(film.styles, names, strict=True))
         layers = [layer_of(style, figure, film, name) for style, name in named]
-        self._text = "\n".join(_document(film, figure, layers)) + "\n"
+        shown: list[str] = []
+        for (style, name), layer in zip(named, layers, strict=True):
+            shown += [_layer_begin(name, _laid(style.opacity, style.blend)), *layer.elements]
+            shown.append("</g>")
+        definitions = [line for layer in layers for line in layer.definitions]
+        self._frames.append((figure.index, figure.time))
+        self._definitions = list(dict.fromkeys([*self._definitions, *definitions]))
+        self._shown.append(shown)
+        self._size += sum(len(line) + 1 for line in (*shown, *definitions))
         self.notes += [note for layer in layers for note in layer.notes]
+        told = too_large(film, self._size, len(self._frames)) if len(self._frames) > 1 else None
+        if told is not None:
+            raise OptionError(told)
 
     def save(self, path: Path) -> None:
-        """Write it."""
-        path.write_text(self._text, "utf-8", newline="\n")
+        """Write what was taken."""
+        path.write_text("\n".join(self._lines()) + "\n", "utf-8", newline="\n")
+
+    def _lines(self) -> list[str]:
+        """The lines of the document."""
+        numbers, times = zip(*self._frames, strict=True)
+        lines = _head(self.film, numbers[0], numbers[-1])
+        if self._definitions:
+            lines += ["<defs>", *self._definitions, "</defs>"]
+        lines += _background(self.film)
+        if len(numbers) == 1:
+            return [*lines, *self._shown[0], "</svg>"]
+        for number, turn, shown in zip(
+            numbers, turns(list(times), self.film.rate), self._shown, strict=True
+        ):
+            hidden = "" if number == numbers[0] else ' display="none"'
+            lines += [_layer_begin(f"frame{number}", hidden), turn, *shown, "</g>"]
+        return [*lines, "</svg>"]
 
 
 def names_of(film: Film) -> list[str]:
@@ -73,32 +112,32 @@ def names_of(film: Film) -> list[str]:
     ]
 
 
-def _document(film: Film, figure: Figure, layers: list[Layer]) -> list[str]:
-    """The lines of a document."""
+def _head(film: Film, first: int, last: int) -> list[str]:
+    """What a document of these frames begins with."""
     width, height = _sides(film)
-    box = _view_box(film)
-    lines = [
+    shown = f"frame {first}" if first == last else f"frames {first} to {last}"
+    return [
         '<?xml version="1.0" encoding="UTF-8"?>',
-        f'<svg {NAMESPACES} width="{width}" height="{height}" viewBox="{box}"{_aspect(film)}>',
-        f"<title>{escape(film.name)}, frame {figure.index}</title>",
+        f'<svg {NAMESPACES} width="{width}" height="{height}" '
+        f'viewBox="{_view_box(film)}"{_aspect(film)}>',
+        f"<title>{escape(film.name)}, {shown}</title>",
     ]
-    definitions = [line for layer in layers for line in layer.definitions]
-    if definitions:
-        lines += ["<defs>", *definitions, "</defs>"]
-    if film.background is not None:
-        x, y, across, down = box.split()
-        color = hexes(np.rint(film.background).astype(np.uint8)[None])[0]
-        lines.append(
-            f'<rect id="background" x="{x}" y="{y}" width="{across}" height="{down}" '
-            f'fill="{color}"/>'
-        )
-    for style, layer, name in zip(film.styles, layers, names_of(film), strict=True):
-        lines.append(
-            f'<g id="{name}" inkscape:groupmode="layer" inkscape:label="{name}"'
-            f"{_laid(style.opacity, style.blend)}>"
-        )
-        lines += [*layer.elements, "</g>"]
-    return [*lines, "</svg>"]
+
+
+def _background(film: Film) -> list[str]:
+    """What is seen where there is no picture."""
+    if film.background is None:
+        return []
+    x, y, across, down = _view_box(film).split()
+    color = hexes(np.rint(film.background).astype(np.uint8)[None])[0]
+    return [
+        f'<rect id="background" x="{x}" y="{y}" width="{across}" height="{down}" fill="{color}"/>'
+    ]
+
+
+def _layer_begin(name: str, more: str) -> str:
+    """The begin of a group that Inkscape shows as a layer."""
+    return f'<g id="{name}" inkscape:groupmode="layer" inkscape:label="{name}"{more}>'
 
 
 def _sides(film: Film) -> tuple[str, str]:
