@@ -123,6 +123,7 @@ class OutputKeywords(TypedDict, total=False):
     svg_merge: bool
     svg_gradients: str
     relief: str | None
+    lottie_limit: int
 
 
 class RenderKeywords(RangeKeywords, LookKeywords, OutputKeywords, DeviceKeywords, total=False):
