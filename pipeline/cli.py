@@ -144,9 +144,13 @@ def run_info(arguments: argparse.Namespace) -> None:
     Args:
         arguments: What the user gave.
     """
-    from pipeline.commands.info import describe
+    from pipeline.commands.info import describe, edits_in
 
-    print(describe(Path(arguments.file), as_json=arguments.json))
+    path = Path(arguments.file)
+    if arguments.edits:
+        print(edits_in(path), end="")
+    else:
+        print(describe(path, as_json=arguments.json))
 
 
 def run_measure(arguments: argparse.Namespace) -> None:

@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from pipeline.edit_log.json_lines import read_log, write_log
+from pipeline.edit_log.json_lines import write_log
+from pipeline.edit_log.read import read_log
 from pipeline.options.edit_log import EditLog
 from pipeline.progress import Progress
 from pipeline.track import TrackReader

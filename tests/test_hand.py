@@ -11,7 +11,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pipeline.edit_log.json_lines import as_json_lines, from_json_lines, read_log, write_log
+from pipeline.edit_log.json_lines import as_json_lines, from_json_lines, write_log
+from pipeline.edit_log.read import read_log
 from pipeline.options.edit_log import EditLog
 from stages.hand import EDITS, Edit
 from stages.hand.collapse_vertex import CollapseVertex

@@ -10,9 +10,11 @@ from meshes import random_mesh
 from PIL import Image
 
 import trimotion
+from stages.exchange.svg.hatch import hatched
 from stages.exchange.svg.slopes import Slopes, best_slopes, channel_slopes
 from trimotion import OptionError
 from warp_kernels.drawing.paint import Paint
+from warp_kernels.scene.stroke_lay import own_lay
 
 SVG = "{http://www.w3.org/2000/svg}"
 
@@ -108,3 +110,80 @@ def test_gradients_add_up_and_hide_the_single_ones(track: Path) -> None:
     assert 3 * len(plain) < len(text)
     with pytest.raises(OptionError, match="choose from exact, plain"):
         written(track, "q.svg", styles="gradient", frames=0, svg_gradients="both")
+
+
+@pytest.mark.parametrize("tone", [0.03, 0.3, 0.8])
+def test_strokes_lie_in_their_triangles_and_reach_the_tone(tone: float) -> None:
+    mesh = random_mesh(seed=8)
+    lay, width = own_lay(mesh.triangle_ids, mesh.corners), 0.25
+    tones = np.full(mesh.triangle_count, tone)
+    found = hatched(mesh.corners, lay, 20.0, 0.25, tones, width)
+    sides = found.ends[:, 1] - found.ends[:, 0]
+    lengths = np.hypot(*sides.T)
+    inked = np.bincount(found.triangles, weights=width * lengths, minlength=len(tones))
+    is_wide = mesh.heights > 8 * width
+    assert is_wide.sum() > 10
+    np.testing.assert_allclose((inked / mesh.areas)[is_wide], tone, rtol=1e-4)
+    across = 0.5 * width * np.stack([-sides[:, 1], sides[:, 0]], axis=1) / lengths[:, None]
+    corners = mesh.corners[found.triangles]
+    edges = np.roll(corners, -1, axis=1) - corners
+    for side in (-1, 0, 1):
+        for end in range(2):
+            away = (found.ends[:, end] + side * across)[:, None] - corners
+            depth = edges[..., 0] * away[..., 1] - edges[..., 1] * away[..., 0]
+            depth /= np.hypot(edges[..., 0], edges[..., 1])
+            assert depth[is_wide[found.triangles]].min() > (-1e-6 if tone < 0.5 else -width)
+
+
+@pytest.mark.parametrize(
+    "style", ["hatching", "crosshatching:paper=#fff,ink=#000", "hatching:colored=1"]
+)
+def test_strokes_are_as_dark_as_those_that_are_drawn(track: Path, style: str) -> None:
+    """Means of the whole picture; lines and papers of an SVG mix code values."""
+    drawn = np.asarray(Image.open(written(track, "t.png", styles=style, frames=0)), float)
+    root = ElementTree.parse(written(track, "t.svg", styles=style, frames=0)).getroot()
+    height, width = drawn.shape[:2]
+    picture = np.zeros(3)
+    papers = {p.get("id"): p for p in root.iter(f"{SVG}path") if p.get("fill")}
+    one = next(iter(trimotion.open_track(track)))
+    corners = one.vertices[one.triangles]
+    first, second = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    areas = 0.5 * np.abs(first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0])
+    pens = {g.get("id"): g for g in root.iter(f"{SVG}g") if g.get("stroke-width")}
+    strokes = {}
+    for group in pens.values():
+        for path in group.iter(f"{SVG}path"):
+            strokes[path.get("id")] = (path.get("stroke") or group.get("stroke"), path.get("d"))
+    pen_width = float(next(iter(pens.values())).get("stroke-width") or 0)
+    name = style.partition(":")[0]
+    for number, area in zip(one.triangle_ids, areas, strict=True):
+        cut = papers.get(f"{name}-paper-cut-{number}")
+        paper = color_of("#ffffff" if cut is None else cut.get("fill"))
+        picture += area * paper
+        if f"{name}-{number}" in strokes:
+            pen, data = strokes[f"{name}-{number}"]
+            ends = np.array(re.findall(r"-?[\d.]+", data), float).reshape(-1, 2, 2)
+            length = np.hypot(*(ends[:, 1] - ends[:, 0]).T).sum()
+            picture += pen_width * length * (color_of(pen) - paper)
+    picture /= height * width
+    # strokes that cross cover less than they are long
+    slack = 12 if "cross" in style else 4
+    assert np.abs(picture - drawn.reshape(-1, 3).mean(axis=0)).max() < slack
+
+
+def color_of(text: str) -> np.ndarray:
+    return np.array([int(text[i : i + 2], 16) for i in (1, 3, 5)], float)
+
+
+def test_a_pen_a_layer_in_millimetres(track: Path) -> None:
+    style = "crosshatching:paper=none,ink=#102030"
+    path = written(track, "m.svg", styles=style, frames=0, svg_mm=300)
+    root = ElementTree.parse(path).getroot()
+    assert (root.get("width"), root.get("height")) == ("300mm", "200mm")
+    assert root.get("viewBox") == "0 0 96 64"
+    label = "{http://www.inkscape.org/namespaces/inkscape}label"
+    pens = [group for group in root.iter(f"{SVG}g") if group.get("stroke")]
+    assert [pen.get(label) for pen in pens] == ["1 #102030"]
+    assert not list(root.iter(f"{SVG}rect"))
+    with pytest.raises(OptionError, match="between 0"):
+        written(track, "n.svg", styles=style, frames=0, svg_mm=-1)

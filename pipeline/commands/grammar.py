@@ -261,11 +261,19 @@ def _add_telling(group: Any) -> None:
 
 
 def _add_info(commands: Any) -> None:
-    parser = _command(commands, "info", "Print what a file is.", "trimotion info FILE [--json]")
+    parser = _command(
+        commands, "info", "Print what a file is.", "trimotion info FILE [--json|--edits]"
+    )
     parser.add_argument(
         "file", metavar="FILE", type=text_value, help="a mesh track or what FFmpeg reads"
     )
-    parser.add_argument("--json", action="store_true", help="print JSON")
+    form = parser.add_mutually_exclusive_group()
+    form.add_argument("--json", action="store_true", help="print JSON")
+    form.add_argument(
+        "--edits",
+        action="store_true",
+        help="print the edits by hand that a track holds, as --edits of solve reads them",
+    )
 
 
 def _add_measure(commands: Any) -> None:

@@ -4,11 +4,13 @@ import dataclasses
 import json
 from pathlib import Path
 
+from pipeline.options.edit_log import EditLog
 from pipeline.track import TrackReader, is_track
 from pipeline.track.plain_values import to_plain
 from pipeline.track.schema import FORMAT
 from stages.focus import spelled
 from stages.media import MediaInfo, probe
+from warp_kernels.errors import OptionError
 
 MOST_SHOTS = 12
 """Shots of a track that are listed for people."""
@@ -32,6 +34,31 @@ def describe(path: Path, *, as_json: bool) -> str:
             return json.dumps(_facts(track), indent=2) if as_json else _aligned(_track_rows(track))
     info = probe(path)
     return json.dumps(info.as_dict(), indent=2) if as_json else _aligned(_rows(info))
+
+
+def edits_in(path: Path) -> str:
+    """The edits by hand that are in force in a track, one a line as JSON.
+
+    Args:
+        path: The track.
+
+    Raises:
+        OptionError: If it is another file.
+        TrackError: If it is damaged.
+    """
+    from pipeline.edit_log.json_lines import as_json_lines
+
+    if not is_track(path):
+        raise OptionError(f"info --edits: {path} is no mesh track; give what trimotion solve wrote")
+    return as_json_lines(_log_in(path))
+
+
+def _log_in(track: Path) -> EditLog:
+    """The edits that are in force in a track."""
+    from pipeline.edit_log.journal import EditJournal
+
+    with EditJournal(track) as journal:
+        return journal.log
 
 
 def _aligned(rows: list[tuple[str, str]]) -> str:
@@ -82,6 +109,9 @@ def _track_rows(track: TrackReader) -> list[tuple[str, str]]:
         ("colours", header.model.name),
         ("focus", _focus(spelled(header.solve.foci))),
     ]
+    edits = _log_in(track.path).edits
+    if edits:
+        told.append(("edits", f"{len(edits)}, which --edits prints"))
     if rows:
         counts = [row.triangle_count for row in rows]
         told.append(("triangles", f"{min(counts)} to {max(counts)}"))

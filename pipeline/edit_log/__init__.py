@@ -1,1 +1,1 @@
-"""Logs of edits by hand outside of the program: as files."""
+"""Logs of edits by hand outside of the program: as files, and in tracks."""

@@ -62,7 +62,7 @@ def from_json_lines(text: str, name: str | Path) -> EditLog:
     return EditLog(tuple(edits))
 
 
-def read_log(path: Path) -> EditLog:
+def read_lines(path: Path) -> EditLog:
     """Read a log from a file.
 
     Raises:

@@ -53,7 +53,7 @@ def values_of(given: Mapping[str, Any]) -> dict[str, Any]:
             if named is not None:
                 values[field] = output_in(named, source, ending)
     if isinstance(values.get("edits"), str):
-        read_log = imported("pipeline.edit_log.json_lines:read_log")
+        read_log = imported("pipeline.edit_log.read:read_log")
         values["edits"] = read_log(Path(values["edits"]))
     if given.get("resume"):
         values["overwrite"] = True  # what is drawn from a track replaces what was drawn before

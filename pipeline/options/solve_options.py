@@ -86,7 +86,8 @@ class SolveOptions:
     edits: EditLog | None = field(
         default=None,
         metadata={
-            "help": "edits by hand, one a line as JSON; each reaches through its shot",
+            "help": "edits by hand, one a line as JSON, or the track that holds them; each reaches "
+            "through its shot",
             "metavar": "LOG.jsonl",
             "group": "motion",
         },

@@ -16,7 +16,8 @@ Blobs are little-endian arrays, packed as `blobs` tells:
 
 Edits by hand that a person is at stand in `edits`, which is only ever appended to: a row names the
 edit that it follows, so those that were undone stay. The last row of `edit_places` says which of
-them is the last one in force.
+them is the last one in force. `pipeline.edit_log.journal` writes both, from the first change on;
+until then the log with which the frames were solved, in the header, is all that there is.
 """
 
 import sqlite3

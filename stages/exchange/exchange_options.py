@@ -9,6 +9,8 @@ from warp_kernels.errors import OptionError
 MAX_PRECISION = 6
 """Decimals; more than positions have."""
 
+MAX_WIDTH = 10_000
+"""Millimetres; more than plotters have."""
 GRADIENTS = ("exact", "plain")
 """How linear colours can be written."""
 
@@ -42,6 +44,15 @@ class ExchangeOptions:
     )
     """How linear colours are written."""
 
+    svg_mm: float = field(
+        default=0.0,
+        metadata={
+            "help": "width of the picture in .svg on paper, in millimetres, for plotters and "
+            "cutters; 0 for a size in pixels",
+            "metavar": "MM",
+        },
+    )
+    """Width of the output on paper [mm], or 0."""
     relief: str | None = field(
         default=None,
         metadata={
@@ -70,6 +81,10 @@ class ExchangeOptions:
         if not 0 <= self.svg_precision <= MAX_PRECISION:
             raise OptionError(
                 f"--svg-precision {self.svg_precision}: must lie between 0 and {MAX_PRECISION}"
+            )
+        if not 0.0 <= self.svg_mm <= MAX_WIDTH:
+            raise OptionError(
+                f"--svg-mm {self.svg_mm:g}: must lie between 0 (a size in pixels) and {MAX_WIDTH}"
             )
         if self.svg_gradients not in GRADIENTS:
             raise OptionError(

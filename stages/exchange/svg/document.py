@@ -75,7 +75,7 @@ def names_of(film: Film) -> list[str]:
 
 def _document(film: Film, figure: Figure, layers: list[Layer]) -> list[str]:
     """The lines of a document."""
-    width, height = film.framing.canvas
+    width, height = _sides(film)
     box = _view_box(film)
     lines = [
         '<?xml version="1.0" encoding="UTF-8"?>',
@@ -99,6 +99,15 @@ def _document(film: Film, figure: Figure, layers: list[Layer]) -> list[str]:
         )
         lines += [*layer.elements, "</g>"]
     return [*lines, "</svg>"]
+
+
+def _sides(film: Film) -> tuple[str, str]:
+    """Width and height: pixels, or millimetres on paper."""
+    width, height = film.framing.canvas
+    on_paper = film.options.svg_mm
+    if on_paper == 0.0:
+        return str(width), str(height)
+    return f"{on_paper:.6g}mm", f"{on_paper * height / width:.6g}mm"
 
 
 def _view_box(film: Film) -> str:

@@ -20,7 +20,7 @@ SHEETS = 16
 
 def flat(style: Style, figure: Figure, film: Film, name: str) -> Layer:
     """One path for each triangle, or for neighbours of one colour."""
-    return _faces(figure, film, name, figure.colors)
+    return Layer(faces(figure, film, name, figure.colors), [])
 
 
 def paper(style: Style, figure: Figure, film: Film, name: str) -> Layer:
@@ -36,11 +36,18 @@ def paper(style: Style, figure: Figure, film: Film, name: str) -> Layer:
     dark = np.minimum(2.0 * brightness, 1.0)[:, None] * color
     light = np.maximum(2.0 * brightness - 1.0, 0.0)[:, None]
     colors = np.rint(dark + light * (255.0 - dark)).astype(np.uint8)
-    return _faces(figure, film, name, colors)
+    return Layer(faces(figure, film, name, colors), [])
 
 
-def _faces(figure: Figure, film: Film, name: str, colors: np.ndarray) -> Layer:
-    """Paths in these colours, [T, 3] uint8, over a ground."""
+def faces(figure: Figure, film: Film, name: str, colors: np.ndarray) -> list[str]:
+    """Elements of all triangles in some colours, over a ground.
+
+    Args:
+        figure: The frame.
+        film: What all frames have in common.
+        name: Begin of the ids.
+        colors: Code values, [T, 3] uint8.
+    """
     mesh, precision = figure.mesh, film.options.svg_precision
     if film.options.svg_merge:
         merged = merged_outlines(mesh, colors)
@@ -53,4 +60,4 @@ def _faces(figure: Figure, film: Film, name: str, colors: np.ndarray) -> Layer:
         triangles = np.arange(mesh.triangle_count)
     ids = ids_of(name, mesh.triangle_ids[triangles])
     shown = elements('<path id="%s" fill="%s" d="%s"/>', ids, hexes(colors[triangles]), data)
-    return Layer([ground_of(figure), *shown], [])
+    return [ground_of(figure), *shown]

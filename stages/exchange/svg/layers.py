@@ -29,9 +29,11 @@ Drawn = Callable[[Style, Figure, Film, str], Layer]
 
 LAYERS = {
     "circles": "stages.exchange.svg.discs:circles",
+    "crosshatching": "stages.exchange.svg.strokes:crosshatching",
     "edges": "stages.exchange.svg.lines:edges",
     "flat": "stages.exchange.svg.faces:flat",
     "gradient": "stages.exchange.svg.gradients:gradient",
+    "hatching": "stages.exchange.svg.strokes:hatching",
     "incircles": "stages.exchange.svg.discs:incircles",
     "paper": "stages.exchange.svg.faces:paper",
     "shrink": "stages.exchange.svg.rounded:shrunk",
