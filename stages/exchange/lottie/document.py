@@ -69,6 +69,8 @@ class Lottie(Format):
         rate = self.film.rate or Fraction(25)
         frames = [(time - self._times[0]) * rate for time in self._times]
         times = np.round(np.array([*frames, frames[-1] + 1], np.float64), 3)
+        # the first layer is the topmost: what ends lies below what stays, since rlottie shows a
+        # layer for a frame longer than it lasts
         layers = []
         lives = self._lives.found()
         for (first, end), group in groupby(lives, key=lambda life: (life.first, life.end)):

@@ -48,7 +48,7 @@ class Lives:
         self._colors.append(figure.colors)
 
     def found(self) -> list[Life]:
-        """The lives, by first frame, end and number."""
+        """The lives, those that end last first; then by first frame and number."""
         rows, corners = np.concatenate(self._rows), np.concatenate(self._corners)
         colors = np.concatenate(self._colors)
         order = np.lexsort(rows.T[::-1])
@@ -60,4 +60,4 @@ class Lives:
             Life(int(begin[1]), int(begin[5]), corners[part], colors[part])
             for begin, part in zip(begins, parts, strict=True)
         ]
-        return sorted(lives, key=lambda life: (life.first, life.end, life.triangle))
+        return sorted(lives, key=lambda life: (-life.end, life.first, life.triangle))
