@@ -124,6 +124,7 @@ class OutputKeywords(TypedDict, total=False):
     svg_gradients: str
     svg_mm: float
     relief: str | None
+    lottie_limit: int
 
 
 class RenderKeywords(RangeKeywords, LookKeywords, OutputKeywords, DeviceKeywords, total=False):

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 FORMATS = {
     ".csv": "stages.exchange.table:Table",
     ".glb": "stages.exchange.solids.gltf:Gltf",
+    ".json": "stages.exchange.lottie.document:Lottie",
     ".npz": "stages.exchange.arrays:Arrays",
     ".obj": "stages.exchange.solids.obj:Obj",
     ".ply": "stages.exchange.solids.ply:Ply",

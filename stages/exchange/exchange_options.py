@@ -63,6 +63,12 @@ class ExchangeOptions:
     )
     """Heights in 3D formats, as `Relief.parse` reads them; None for flat ones."""
 
+    lottie_limit: int = field(
+        default=500,
+        metadata={"help": "most triangles of a frame in .json; players become slow beyond"},
+    )
+    """Most triangles of a frame in Lottie."""
+
     @cached_property
     def heights(self) -> Relief | None:
         """The relief that is wanted, or None."""
@@ -70,6 +76,8 @@ class ExchangeOptions:
 
     def __post_init__(self) -> None:
         _ = self.heights
+        if self.lottie_limit < 1:
+            raise OptionError(f"--lottie-limit {self.lottie_limit}: must be at least 1")
         if not 0 <= self.svg_precision <= MAX_PRECISION:
             raise OptionError(
                 f"--svg-precision {self.svg_precision}: must lie between 0 and {MAX_PRECISION}"

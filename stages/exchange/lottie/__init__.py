@@ -1,0 +1,1 @@
+"""Lottie: an animation of shapes for apps and web pages, with keyframes over triangles' lives."""
