@@ -40,6 +40,9 @@ trimotion styles lists every style and move with its parameters, trimotion style
 """
 
 
+PLAN_FORMATS = ("text", "json", "slurm", "openjd", "flamenco")
+"""What `plan` prints."""
+
 _CHOICE = re.compile(r"argument COMMAND: invalid choice: '(.*)' \(choose from ")
 
 
@@ -190,14 +193,34 @@ def _add_plan(commands: Any) -> None:
     parser = _command(
         commands,
         "plan",
-        "Print ranges of whole shots, one a line: solved apart and joined they are the whole.",
-        "trimotion plan INPUT [--parts N] [--json]",
+        "Print ranges of whole shots, one a line: solved apart and joined they are the whole. Or "
+        "write the job of a farm that does this.",
+        "trimotion plan INPUT [--parts N] [--json]\n"
+        "       trimotion plan INPUT --format ENGINE [-o JOB.mtrk] [options of solve] > SCRIPT",
     )
     parser.add_argument("source", metavar="INPUT", type=text_value, help="what FFmpeg reads")
     parser.add_argument(
         "--parts", metavar="N", type=whole_number, help="at most so many (default: one a shot)"
     )
-    parser.add_argument("--json", action="store_true", help="print JSON")
+    form = parser.add_mutually_exclusive_group()
+    form.add_argument(
+        "--format",
+        choices=PLAN_FORMATS,
+        metavar="|".join(PLAN_FORMATS),
+        default="text",
+        help="ranges, or the job of a farm: a script for Slurm, a template of Open Job "
+        "Description, a job type for Flamenco (default: text)",
+    )
+    form.add_argument("--json", action="store_true", help="as --format json")
+    parser.add_argument(
+        "-o",
+        "--output",
+        metavar="JOB.mtrk",
+        type=text_value,
+        help="the track that a farm makes (default: the name of the input and .mtrk, in this "
+        "folder)",
+    )
+    parser.add_argument("--preset", metavar="FILE.toml", type=text_value, help="options from it")
     add_job_options(parser, "plan")
 
 
