@@ -115,7 +115,7 @@ def run_plan(arguments: argparse.Namespace) -> None:
     Args:
         arguments: What the user gave; options that were left out are absent.
     """
-    from pipeline.commands.plan import planned
+    from pipeline.commands.farm.plan import planned
 
     print(planned(arguments))
 
@@ -126,7 +126,7 @@ def run_join(arguments: argparse.Namespace) -> None:
     Args:
         arguments: What the user gave.
     """
-    from pipeline.commands.join import join_tracks
+    from pipeline.commands.farm.join import join_tracks
     from pipeline.progress import tell
 
     parts = [Path(name) for name in arguments.tracks]

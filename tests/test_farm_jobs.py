@@ -42,7 +42,7 @@ if [ "$array" = - ]; then bash "$RECORD.spooled" "$@"; else
 fi
 echo "41;cluster"
 """
-"""They stand for the programs: the first keeps what it is told to do, the second does it at once."""
+"""They stand for the programs: the first keeps what it is told, the second does it at once."""
 
 FLAMENCO = """
 const author = {
