@@ -112,15 +112,15 @@ def test_song_has_the_beats_that_the_script_says() -> None:
     """All of them are heard, near to where they were played, and so is the first of each bar."""
     heard = listen(FOLDER / "song.ogg").heard
     beats = np.arange(make_song.METER * make_song.BAR_COUNT) * make_song.BEAT
-    np.testing.assert_allclose(heard.beats[: len(beats)], beats, atol=0.025)
+    np.testing.assert_allclose(heard.beats[: len(beats)], beats, atol=0.01)
     bars = beats[:: make_song.METER]
-    np.testing.assert_allclose(heard.downbeats[: len(bars)], bars, atol=0.025)
+    np.testing.assert_allclose(heard.downbeats[: len(bars)], bars, atol=0.01)
 
 
 def test_sections_of_the_show_begin_where_the_cut_does(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """The timeline of the README fits its film, and sections lie on the cuts, to the frame next."""
+    """The timeline of the README fits its film, and its sections begin with its parts."""
     film = tmp_path / "rough.mp4"
     cut_to_song.cut(film)
     words = ["timeline", str(FOLDER / "show.toml"), "--check", str(film)]
@@ -128,7 +128,7 @@ def test_sections_of_the_show_begin_where_the_cut_does(
     table = capsys.readouterr().out.split("section\n")[1].split("\n\n")[0]
     begins = [int(line.split()[2]) for line in table.splitlines()]
     cuts = np.cumsum([0, *(end - first for _, first, end in cut_to_song.CUTS)])
-    np.testing.assert_allclose(begins, cuts[:-1], atol=1)
+    assert begins == list(cuts[:-1])
 
 
 @pytest.mark.parametrize("frame", [-1, FRAME_COUNT])
