@@ -84,7 +84,7 @@ PICTURES: dict[str, Picture] = {
     "glass": Picture([of("out/glass.mp4", 57)], 1120, quality=86),
     "lights": Picture([of("out/lights.mp4", 0)], 1120),
     "music_video": Picture(
-        [of("out/music_video.mp4", 12, 36, 54, 96), of("out/music_video.mp4", 133, 151, 171, 184)],
+        [of("out/music_video.mp4", 12, 36, 54, 96), of("out/music_video.mp4", 133, 151, 171, 181)],
         480,
         quality=84,
     ),
