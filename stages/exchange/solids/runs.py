@@ -7,6 +7,7 @@ import numpy as np
 
 from stages.exchange.figure import Figure
 
+
 @dataclass(frozen=True, eq=False)
 class MeshPose:
     """How the mesh of a run looks in a frame."""

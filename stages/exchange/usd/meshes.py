@@ -55,13 +55,14 @@ def add_one_mesh(
         return
     place = 0
     for run in runs:
-        if place:
-            _tell_pose(mesh, before, times[place] - Usd.TimeCode.SafeStep())
+        own = times[place : place + len(run.poses)]
+        place += len(own)
         if len(runs) > 1:
-            _tell_corners(mesh, run.triangles, times[place])
-        for pose, time in zip(run.poses, times[place:], strict=False):
+            _tell_corners(mesh, run.triangles, own[0])
+        for pose, time in zip(run.poses, own, strict=True):
             _tell_pose(mesh, pose, time)
-        place, before = place + len(run.poses), run.poses[-1]
+        if place < len(times):
+            _tell_pose(mesh, run.poses[-1], times[place] - Usd.TimeCode.SafeStep())
 
 
 def _mesh_below(parent: UsdGeom.Xform, name: str, is_flat: bool) -> UsdGeom.Mesh:

@@ -48,8 +48,8 @@ def saved_scene(
     _add_camera(root, film)
     try:
         stage.GetRootLayer().Export(str(path), comment="made by trimotion")
-    except Tf.ErrorException as error:
-        raise OSError(str(error).strip().splitlines()[-1]) from error
+    except Tf.ErrorException as error:  # its text names lines of the library's source, no reason
+        raise OSError("usd-core failed") from error
 
 
 def _add_camera(root: UsdGeom.Xform, film: Film) -> None:
