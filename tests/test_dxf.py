@@ -159,7 +159,9 @@ def test_what_it_cannot_hold_is_told_in_one_line(
 
 
 def test_a_missing_library_is_told_in_one_line(track: Path) -> None:
-    program = "import sys; sys.modules['ezdxf'] = None; from pipeline.cli import main; sys.exit(main())"
+    program = (
+        "import sys; sys.modules['ezdxf'] = None; from pipeline.cli import main; sys.exit(main())"
+    )
     target = track.parent / "none.dxf"
     command = [sys.executable, "-c", program, "render", str(track), "-o", str(target)]
     done = subprocess.run([*command, "--style", "flat"], capture_output=True, text=True, cwd=ROOT)
