@@ -111,6 +111,9 @@ _HEARD = ("audio_mode", "audio_offset", "beats")
 _SOLVED_WITH = ("overwrite", "resume", *_HEARD)
 """Options of an output that a track has, and those that say what a timeline hears."""
 
+_ONCE = ("jobs", "resume", "loop")
+"""Options of one run that solves all."""
+
 _LOOKED_AT = ("styles", "regions", "palette", "grade", "background", "fps", *_HEARD)
 """Options that say what a timeline may change, and when."""
 
@@ -119,7 +122,7 @@ COMMAND_OPTIONS: dict[str, Callable[[Option], bool]] = {
     "solve": lambda o: o.group not in ("look", "output") or o.dest in _SOLVED_WITH,
     "render": lambda o: not _SOLVING & {o.group, o.dest},
     "preview": lambda o: o.dest not in ("track", "resume", "jobs", "edits", "loop"),
-    "plan": lambda o: o.group == "range" or o.dest == "cuts",
+    "plan": lambda o: COMMAND_OPTIONS["solve"](o) and o.dest not in _ONCE,
     "measure": lambda o: o in RANGE_OPTIONS,
     "timeline": lambda o: o.dest in _LOOKED_AT,
 }
