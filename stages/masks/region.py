@@ -1,8 +1,8 @@
 """A style inside of a mask."""
 
+import os
 import re
 from dataclasses import dataclass, field
-from pathlib import Path
 
 from stages.masks.area import Area
 from stages.media.naming import input_pattern
@@ -54,4 +54,4 @@ class Region:
 def _is_there(name: str) -> bool:
     """Whether a name is that of a file or of numbered stills."""
     pattern = input_pattern(name)
-    return Path(name).exists() if pattern is None else bool(pattern.numbers())
+    return os.path.exists(name) if pattern is None else bool(pattern.numbers())
