@@ -245,7 +245,7 @@ export class Stage {
   stroke(at, removes) {
     const kind = removes ? "remove" : "insert";
     // the same chance until the next edit: what the preview shows is what comes
-    return { edit: kind, at: [at.x, at.y], ...this.brush, seed: this.state.number };
+    return { edit: kind, frame: this.frame, at: [at.x, at.y], ...this.brush, seed: this.state.number };
   }
 
   /**

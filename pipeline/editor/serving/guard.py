@@ -44,7 +44,7 @@ class Guard:
             return
         reason = self._refused(scope)
         if reason is not None:
-            self._log(f"refused {shown(_request(scope))}: {reason}")
+            self._log(f"refused {self._request(scope)}: {reason}")
             await _refuse(scope, receive, send, reason)
             return
         inside = scope["path"][1 + len(self._address.token) :] or "/"
@@ -52,7 +52,7 @@ class Guard:
         try:
             await self._app(own, receive, _with_headers(send))
         except Exception as error:  # whatever a request does, the program lives and says one line
-            self._log(f"{shown(_request(scope))}: {type(error).__name__}: {shown(str(error))}")
+            self._log(f"{self._request(scope)}: {type(error).__name__}: {shown(str(error))}")
 
     def _refused(self, scope: Scope) -> str | None:
         """Why a request is refused, or None."""
@@ -69,6 +69,12 @@ class Guard:
             return f"{scope['method']} is no way to ask"
         return None
 
+    def _request(self, scope: Scope) -> str:
+        """What was asked for, without the word: a log may be passed on."""
+        word, _, rest = scope["path"].removeprefix("/").partition("/")
+        asked = f"/{'*' * min(len(word), 3)}/{rest}".replace(self._address.token, "***")
+        return shown(f"{scope.get('method', 'socket')} {asked}")
+
 
 def shown(text: str) -> str:
     """A stranger's text as a line of the log can show it.
@@ -78,13 +84,6 @@ def shown(text: str) -> str:
     """
     plain = "".join(letter if letter.isprintable() else "?" for letter in text[: MOST_SHOWN + 1])
     return plain if len(plain) <= MOST_SHOWN else f"{plain[:MOST_SHOWN]}..."
-
-
-def _request(scope: Scope) -> str:
-    """What was asked for, without the word: a log may be passed on."""
-    path = scope["path"].removeprefix("/")
-    word, _, rest = path.partition("/")
-    return f"{scope.get('method', 'socket')} /{'*' * min(len(word), 3)}/{rest}"
 
 
 async def _refuse(scope: Scope, receive: Receive, send: Send, reason: str) -> None:

@@ -21,7 +21,7 @@ from pipeline.editor.wire.asked import MOST_BYTES
 
 UNUSED = 900.0
 """Without a window for so long the server ends [s]."""
-LOOKS = 1.0
+LOOKS = 0.25
 """How often it is looked whether a window is open [s]."""
 
 
@@ -67,6 +67,7 @@ def serve(
     *,
     opens: bool,
     ready: Callable[[], None],
+    is_over: Callable[[], bool] = lambda: False,
 ) -> None:
     """Serve until a signal comes, or nobody has looked for `UNUSED` seconds.
 
@@ -76,6 +77,7 @@ def serve(
         listener: Listens there.
         opens: Whether a browser is opened.
         ready: Called once requests are answered.
+        is_over: Asked again and again whether to end.
     """
     config = uvicorn.Config(
         app_of(studio, address),
@@ -103,7 +105,7 @@ def serve(
         while not serving.done() and not server.should_exit:
             await asyncio.wait([serving], timeout=LOOKS)
             unused = 0.0 if studio.is_used else unused + LOOKS
-            server.should_exit |= unused >= UNUSED
+            server.should_exit |= unused >= UNUSED or is_over()
         await serving
 
     try:
