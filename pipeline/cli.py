@@ -121,17 +121,14 @@ def run_preview(arguments: argparse.Namespace) -> None:
 
 
 def run_plan(arguments: argparse.Namespace) -> None:
-    """Print ranges of whole shots.
+    """Print ranges of whole shots, or the job of a farm.
 
     Args:
         arguments: What the user gave; options that were left out are absent.
     """
-    from pipeline.loop.plan import plan
-    from pipeline.options.build import fill, values_of
-    from pipeline.options.solve_options import SolveOptions
+    from pipeline.commands.farm.plan import planned
 
-    found = plan(fill(SolveOptions, values_of(vars(arguments))), arguments.parts)
-    print(found.as_json() if arguments.json else found.as_lines())
+    print(planned(arguments))
 
 
 def run_join(arguments: argparse.Namespace) -> None:
@@ -140,7 +137,7 @@ def run_join(arguments: argparse.Namespace) -> None:
     Args:
         arguments: What the user gave.
     """
-    from pipeline.commands.join import join_tracks
+    from pipeline.commands.farm.join import join_tracks
     from pipeline.progress import tell
 
     parts = [Path(name) for name in arguments.tracks]

@@ -31,6 +31,7 @@ IMPORT_HOMES = {
         "stages/spaces",
     ),
     "av": ("stages/media",),
+    "pxr": ("stages/exchange/usd",),
     "argparse": ("pipeline/",),
     "sqlite3": ("pipeline/",),
     "tomllib": ("pipeline/",),
@@ -43,8 +44,8 @@ IMPORT_HOMES = {
 RUNTIME_PACKAGES = frozenset({"warp", "numpy", "scipy", "cv2", "av", "tqdm"})
 """Import names of the run-time dependencies."""
 
-EXTRA_PACKAGES = frozenset({"starlette", "uvicorn"})
-"""Import names of what an extra brings: their home is imported by no other command."""
+EXTRA_PACKAGES = frozenset({"pxr", "starlette", "uvicorn"})
+"""Import names of what extras install; it is imported only where it is used."""
 
 ALLOCATING_FILES = frozenset({"warp_kernels/energy/workspace.py", "warp_kernels/device/device.py"})
 """The only files that ask Warp for memory: the arrays of a job come from the workspace or through

@@ -249,16 +249,14 @@ def test_zoom_leaves_what_is_under_the_pointer(page: Page) -> None:
     page.mouse.move(x, y)
     page.mouse.wheel(0, -200)
     page.wait_for_function("() => trimotion.camera.zoom > 8")
-    assert np.allclose(place(page, 30, 20), (x, y), atol=0.01)
+    assert np.allclose(place(page, 30, 20), (x, y), atol=1)
     page.mouse.down(button="middle")
     page.mouse.move(x + 40, y - 10)
     page.mouse.up(button="middle")
-    assert np.allclose(place(page, 30, 20), (x + 40, y - 10), atol=0.01)
+    assert np.allclose(place(page, 30, 20), (x + 40, y - 10), atol=1)
 
 
-def test_two_windows_and_a_reload_show_the_same(
-    page: Page, browser: Browser, server: Served
-) -> None:
+def test_a_reload_and_another_window(page: Page, browser: Browser, server: Served) -> None:
     other = browser.new_page(viewport=SIZE)
     other.goto(server.address.url)
     expect(other.locator("#loading")).to_be_hidden()

@@ -36,7 +36,11 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
         "preview clip.mp4",
         "preview clip.mp4 -o look.png --style hatching --triangles 3000 --scale 2",
     ),
-    "plan": ("plan film.mp4", "plan film.mp4 --parts 4 --json"),
+    "plan": (
+        "plan film.mp4",
+        "plan film.mp4 --parts 4 --json",
+        "plan film.mp4 --format slurm -o film.mtrk --triangles 3000 > film.sh",
+    ),
     "join": ("join part1.mtrk part2.mtrk part3.mtrk -o film.mtrk",),
     "info": ("info clip.mp4", 'info "shot_####.png"', "info clip.mtrk --json"),
     "measure": (

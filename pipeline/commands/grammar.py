@@ -6,6 +6,14 @@ from typing import Any, NoReturn
 
 from pipeline.commands.editing.grammar import EDIT_ABOUT, EDIT_USAGE, add_edit_options
 from pipeline.commands.examples import ABOUT_ALL, EXAMPLES, shown
+from pipeline.commands.farm.grammar import (
+    JOIN_ABOUT,
+    JOIN_USAGE,
+    PLAN_ABOUT,
+    PLAN_USAGE,
+    add_join_options,
+    add_plan_options,
+)
 from pipeline.commands.hearing.grammar import LISTEN_ABOUT, LISTEN_USAGE, add_listen_options
 from pipeline.commands.overview import COMMANDS_HELP
 from pipeline.commands.style_list import registry_help
@@ -177,33 +185,13 @@ def _add_preview(commands: Any) -> None:
 
 
 def _add_plan(commands: Any) -> None:
-    parser = _command(
-        commands,
-        "plan",
-        "Print ranges of whole shots, one a line: solved apart and joined they are the whole.",
-        "trimotion plan INPUT [--parts N] [--json]",
-    )
-    parser.add_argument("source", metavar="INPUT", type=text_value, help="what FFmpeg reads")
-    parser.add_argument(
-        "--parts", metavar="N", type=whole_number, help="at most so many (default: one a shot)"
-    )
-    parser.add_argument("--json", action="store_true", help="print JSON")
-    add_job_options(parser, "plan")
+    parser = _command(commands, "plan", PLAN_ABOUT, PLAN_USAGE)
+    add_plan_options(parser)
 
 
 def _add_join(commands: Any) -> None:
-    parser = _command(
-        commands,
-        "join",
-        "Put the tracks of ranges that follow each other together.",
-        "trimotion join A.mtrk B.mtrk ... -o OUT.mtrk",
-    )
-    parser.add_argument(
-        "tracks", metavar="TRACK.mtrk", nargs="+", type=text_value, help="in any order"
-    )
-    _add_output(parser, "OUT.mtrk", "the joined track")
-    parser.add_argument("--overwrite", action="store_true", help="replace an existing track")
-    parser.add_argument("-q", "--quiet", action="store_true", help="tell errors only")
+    parser = _command(commands, "join", JOIN_ABOUT, JOIN_USAGE)
+    add_join_options(parser)
 
 
 def _add_inputs(parser: argparse.ArgumentParser, metavar: str, text: str) -> None:

@@ -114,6 +114,9 @@ _SOLVED_WITH = ("overwrite", "resume", *_HEARD)
 _NOT_EDITED = ("track", "resume", "overwrite", "loop", "timeline", *_HEARD)
 """Options that mean nothing for a track that is edited."""
 
+_ONCE = ("jobs", "resume", "loop")
+"""Options of one run that solves all."""
+
 _LOOKED_AT = ("styles", "regions", "palette", "grade", "background", "fps", *_HEARD)
 """Options that say what a timeline may change, and when."""
 
@@ -123,7 +126,7 @@ COMMAND_OPTIONS: dict[str, Callable[[Option], bool]] = {
     "render": lambda o: not _SOLVING & {o.group, o.dest},
     "edit": lambda o: o.group not in ("look", "output") and o.dest not in _NOT_EDITED,
     "preview": lambda o: o.dest not in ("track", "resume", "jobs", "edits", "loop"),
-    "plan": lambda o: o.group == "range" or o.dest == "cuts",
+    "plan": lambda o: COMMAND_OPTIONS["solve"](o) and o.dest not in _ONCE,
     "measure": lambda o: o in RANGE_OPTIONS,
     "timeline": lambda o: o.dest in _LOOKED_AT,
 }

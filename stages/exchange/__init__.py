@@ -21,6 +21,9 @@ FORMATS = {
     ".obj": "stages.exchange.solids.obj:Obj",
     ".ply": "stages.exchange.solids.ply:Ply",
     ".svg": "stages.exchange.svg.document:Svg",
+    ".usd": "stages.exchange.usd.document:Usd",
+    ".usda": "stages.exchange.usd.document:Usd",
+    ".usdc": "stages.exchange.usd.document:Usd",
 }
 """Where the classes are, by ending."""
 

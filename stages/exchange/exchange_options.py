@@ -69,6 +69,15 @@ class ExchangeOptions:
     )
     """Most triangles of a frame in Lottie."""
 
+    usd_single: bool = field(
+        default=False,
+        metadata={
+            "help": "one mesh in .usd, whose triangles change in time, instead of one for each run "
+            "of frames in which none comes or goes; for programs that can read it"
+        },
+    )
+    """Whether USD has one mesh for the whole clip."""
+
     @cached_property
     def heights(self) -> Relief | None:
         """The relief that is wanted, or None."""

@@ -21,6 +21,9 @@ SHAPES = {
     ".obj": False,
     ".ply": False,
     ".svg": True,
+    ".usd": True,
+    ".usda": True,
+    ".usdc": True,
 }
 """Endings of what is written as shapes and numbers, see `stages.exchange`, and whether one file
 holds a clip."""

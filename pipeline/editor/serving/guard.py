@@ -102,6 +102,7 @@ async def _refuse(scope: Scope, receive: Receive, send: Send, reason: str) -> No
 
 def _with_headers(send: Send) -> Send:
     async def answer(message: Message) -> None:
+        """Send a part of the answer."""
         if message["type"] == "http.response.start":
             extra = [(name.encode(), value.encode()) for name, value in HEADERS.items()]
             message = {**message, "headers": [*message.get("headers", ()), *extra]}
