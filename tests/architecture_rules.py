@@ -31,6 +31,7 @@ IMPORT_HOMES = {
         "stages/spaces",
     ),
     "av": ("stages/media",),
+    "ezdxf": ("stages/exchange/dxf",),
     "pxr": ("stages/exchange/usd",),
     "argparse": ("pipeline/",),
     "sqlite3": ("pipeline/",),
@@ -44,7 +45,7 @@ IMPORT_HOMES = {
 RUNTIME_PACKAGES = frozenset({"warp", "numpy", "scipy", "cv2", "av", "tqdm"})
 """Import names of the run-time dependencies."""
 
-EXTRA_PACKAGES = frozenset({"pxr", "starlette", "uvicorn"})
+EXTRA_PACKAGES = frozenset({"ezdxf", "pxr", "starlette", "uvicorn"})
 """Import names of what extras install; it is imported only where it is used."""
 
 ALLOCATING_FILES = frozenset({"warp_kernels/energy/workspace.py", "warp_kernels/device/device.py"})

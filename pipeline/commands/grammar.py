@@ -20,6 +20,7 @@ from pipeline.commands.style_list import registry_help
 from pipeline.commands.unknown import no_command, unknown_arguments
 from pipeline.options.command_line import add_job_options
 from pipeline.options.values import text_value, whole_number
+from pipeline.printable import one_line
 from pipeline.progress import CHOICES
 
 ABOUT = "Turn videos into coherent triangulated animations."
@@ -41,7 +42,7 @@ class OneLineParser(argparse.ArgumentParser):
         found = _CHOICE.match(message)
         if found:
             message = no_command(found[1], self.commands())
-        line = " ".join(message.removeprefix("argument ").split())
+        line = one_line(message.removeprefix("argument "))
         self.exit(2, f"trimotion: error: {line}; see {self.prog} --help\n")
 
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:

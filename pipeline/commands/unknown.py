@@ -1,6 +1,7 @@
 """What to say about words of the command line that mean nothing."""
 
 import difflib
+import os
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
@@ -13,7 +14,7 @@ SEVERAL = ("animate", "solve", "render")
 
 def no_command(word: str, known: Iterable[str]) -> str:
     """What to say about a first word that is no command."""
-    if Path(word).suffix or Path(word).exists():
+    if Path(word).suffix or os.path.exists(word):
         return f"{word!r}: a command comes first, as in trimotion animate {word} -o OUTPUT"
     return f"{word!r}: no such command; {nearest(word, known)}"
 
