@@ -38,6 +38,9 @@ export class Keyboard {
       Enter: () => stage.click("left"),
       Escape: () => stage.letGo(),
       "?": () => help.showModal(),
+      " ": () => stage.togglePlay(),
+      ",": () => stage.step(-1),
+      ".": () => stage.step(1),
     };
     addEventListener("keydown", (event) => this.down(event));
     addEventListener("keyup", (event) => this.shift(event.shiftKey));
