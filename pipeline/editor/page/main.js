@@ -138,6 +138,11 @@ function main() {
   element("help").addEventListener("click", () => /** @type {HTMLDialogElement} */ (element("keys")).showModal());
   stage.watch(() => tellState(stage));
   stage.watch(() => tellTime(stage));
+  // who clicks with a hand goes on with keys of the picture, not of the button
+  addEventListener("click", (event) => {
+    const button = /** @type {Element} */ (event.target).closest?.("button");
+    if (event.detail && button instanceof HTMLElement) button.blur();
+  });
   const told = () => {
     tellHint(stage);
     tellFacts(stage);

@@ -67,7 +67,8 @@ export class Keyboard {
     }
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     if (target instanceof HTMLSelectElement || (target instanceof HTMLInputElement && event.key.length > 1)) return;
-    if (!isOnStage && (event.key === "Enter" || event.key === "Tab" || event.key === " ")) return;
+    if (!isOnStage && (event.key === "Enter" || event.key === "Tab")) return;
+    if (target instanceof HTMLButtonElement && event.key === " ") return;
     if (this.stage.moving && this.type(event)) return;
     if (isOnStage && event.key === "Tab" && !event.shiftKey) {
       event.preventDefault();
