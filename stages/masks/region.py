@@ -4,6 +4,7 @@ import os
 import re
 from dataclasses import dataclass, field
 
+from stages.masks.area import Area
 from stages.media.naming import input_pattern
 from warp_kernels.errors import OptionError
 from warp_kernels.styles import STYLES, Style
@@ -22,6 +23,8 @@ class Region:
     frames: tuple[int, ...] = ()
     """Numbers of the frames for which the mask was drawn, ascending: the triangles that it shows
     there carry the style through their shot. Empty if the mask does not follow them."""
+    areas: tuple[Area, ...] = ()
+    """What a person pointed at in the one frame of the region, if `mask` names no file."""
 
     @classmethod
     def of(cls, text: str, style: Style, flag: str) -> "Region":
