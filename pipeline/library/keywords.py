@@ -126,6 +126,7 @@ class OutputKeywords(TypedDict, total=False):
     mm: float
     relief: str | None
     lottie_limit: int
+    usd_single: bool
 
 
 class RenderKeywords(RangeKeywords, LookKeywords, OutputKeywords, DeviceKeywords, total=False):
