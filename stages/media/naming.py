@@ -16,6 +16,7 @@ STILL_ENDINGS = frozenset({".png", ".jpg", ".jpeg", ".tif", ".tiff", ".webp"})
 
 SHAPES = {
     ".csv": True,
+    ".dxf": False,
     ".glb": True,
     ".json": True,
     ".npz": True,
