@@ -170,7 +170,14 @@ class Triangulator:
         if self._fitting is not self._even.workspace:
             self._fitting.load_image(frame.pixels)
 
-    def next(self, frame: Frame, seed: Carried, earlier: Snapshot | None = None) -> Snapshot:
+    def next(
+        self,
+        frame: Frame,
+        seed: Carried,
+        earlier: Snapshot | None = None,
+        *,
+        renewed: bool = False,
+    ) -> Snapshot:
         """Triangulate a frame that continues a shot.
 
         Args:
@@ -178,11 +185,13 @@ class Triangulator:
             seed: The previous frame's mesh, carried along by the motion.
             earlier: What was given for the previous frame, here or to `recall`: by it is told where
                 the picture boils, and colours keep to its; None for neither.
+            renewed: Whether all that is not held is refined anew, for other errors count now.
         """
         self._lock(seed.locks)
         self._load(frame)
         spring = SPRING * self._rmse(seed.mesh) ** 2
-        unrest = None if self._hold.share else self._unrest(seed, earlier)
+        unrest = Unrest.everywhere(seed.mesh) if renewed else self._unrest(seed, earlier)
+        unrest = None if self._hold.share else unrest
         pace = CALM if unrest is None else BOILING
         rounds, each = pace.spread(0 if self._hold.is_full else self._options.frame_iterations)
         convergence = pace.watch()
