@@ -15,9 +15,9 @@ from stages.optimize import load_mesh, optimize
 from stages.snapshot import Snapshot
 from stages.solve.approximate import Approximator
 from stages.solve.bench import Bench
-from stages.solve.convergence import Convergence
 from stages.solve.fitting import Fitting
 from stages.solve.hold import Hold
+from stages.solve.pace import BOILING, CALM
 from stages.solve.quality import FALL, Trial, smallest_that_reaches
 from stages.spaces import SPACES
 from stages.topology import TOPOLOGIES
@@ -38,11 +38,6 @@ FRAME_DISPLACEMENT = 0.75
 one those that fit the picture better."""
 DEAD_BAND = 0.1
 """Steps of later frames below this are not taken [px]: noise must not move what stands still."""
-FRAME_ROUND = 3
-"""Iterations of later frames between two looks at the topology."""
-FRAME_SAVING = 0.0025
-"""Once a round saves less than this part of the energy, a later frame is done: where little has
-changed one or two rounds are enough, where something moves fast all of them are worth it."""
 RENEWED = 0.8
 """Where a later frame boils it is refined anew over this share of its rounds."""
 CALM_QUALITY = 0.02
@@ -178,7 +173,14 @@ class Triangulator:
         for workspace in {self._own.workspace, self._drawn.workspace} - {self._even.workspace}:
             workspace.load_image(frame.pixels)
 
-    def next(self, frame: Frame, seed: Carried, earlier: Snapshot | None = None) -> Snapshot:
+    def next(
+        self,
+        frame: Frame,
+        seed: Carried,
+        earlier: Snapshot | None = None,
+        *,
+        renewed: bool = False,
+    ) -> Snapshot:
         """Triangulate a frame that continues a shot.
 
         Args:
@@ -186,15 +188,16 @@ class Triangulator:
             seed: The previous frame's mesh, carried along by the motion.
             earlier: What was given for the previous frame, here or to `recall`: by it is told where
                 the picture boils, and colours keep to its; None for neither.
+            renewed: Whether all that is not held is refined anew, for other errors count now.
         """
         self._lock(seed.locks)
         self._load(frame)
-        iterations = 0 if self._hold.is_full else self._options.frame_iterations
-        rounds = max(1, iterations // FRAME_ROUND - 1)
-        each = iterations // (rounds + 1)
-        convergence = Convergence(FRAME_SAVING, patience=1)
         spring = SPRING * self._rmse(seed.mesh) ** 2
-        unrest = None if self._hold.share else self._unrest(seed, earlier)
+        unrest = Unrest.everywhere(seed.mesh) if renewed else self._unrest(seed, earlier)
+        unrest = None if self._hold.share else unrest
+        pace = CALM if unrest is None else BOILING
+        rounds, each = pace.spread(0 if self._hold.is_full else self._options.frame_iterations)
+        convergence = pace.watch()
         if unrest is not None:
             seed = unrest.freed(seed)
         mesh = self._follow(seed.mesh, seed, spring, each, frame.weights)

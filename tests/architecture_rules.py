@@ -31,18 +31,21 @@ IMPORT_HOMES = {
         "stages/spaces",
     ),
     "av": ("stages/media",),
+    "ezdxf": ("stages/exchange/dxf",),
     "pxr": ("stages/exchange/usd",),
     "argparse": ("pipeline/",),
     "sqlite3": ("pipeline/",),
     "tomllib": ("pipeline/",),
     "tqdm": ("pipeline/",),
+    "starlette": ("pipeline/editor/serving/",),
+    "uvicorn": ("pipeline/editor/serving/",),
 }
 """Beginnings of the paths that may import a package; a package without a line is free."""
 
 RUNTIME_PACKAGES = frozenset({"warp", "numpy", "scipy", "cv2", "av", "tqdm"})
 """Import names of the run-time dependencies."""
 
-EXTRA_PACKAGES = frozenset({"pxr"})
+EXTRA_PACKAGES = frozenset({"ezdxf", "pxr", "starlette", "uvicorn"})
 """Import names of what extras install; it is imported only where it is used."""
 
 ALLOCATING_FILES = frozenset({"warp_kernels/energy/workspace.py", "warp_kernels/device/device.py"})

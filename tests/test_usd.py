@@ -32,13 +32,20 @@ def written(path: Path, figures: list[Figure], style: str = "flat", **options: A
 
 
 def seen_at(stage: Any, time: float) -> list[tuple[np.ndarray, ...]]:
-    """Positions and colours of the corners of every mesh that is seen, triangle by triangle."""
+    """Positions and colours of the corners of every mesh that is seen, triangle by triangle.
+
+    What is hidden has no size either.
+    """
     found = []
     for prim in stage.Traverse():
-        image = UsdGeom.Imageable(prim)
-        if not prim.IsA(UsdGeom.Mesh) or image.ComputeVisibility(time) == "invisible":
+        if not prim.IsA(UsdGeom.Mesh):
             continue
         mesh = UsdGeom.Mesh(prim)
+        is_seen = mesh.ComputeVisibility(time) != "invisible"
+        size = np.array(mesh.GetLocalTransformation(time))
+        np.testing.assert_array_equal(size, np.diag([is_seen, is_seen, is_seen, 1]))
+        if not is_seen:
+            continue
         corners = np.array(mesh.GetFaceVertexIndicesAttr().Get(time)).reshape(-1, 3)
         assert set(mesh.GetFaceVertexCountsAttr().Get(time)) == {3}
         points = np.array(mesh.GetPointsAttr().Get(time))[corners]
@@ -74,6 +81,9 @@ def test_every_frame_is_seen_alone_at_and_between_samples(
         (seen,) = seen_at(stage, time)
         for found, right in zip(seen, wanted(figure), strict=True):
             np.testing.assert_array_equal(found, right)
+        if number:
+            (soon,) = seen_at(stage, time - 1e-6)
+            assert len(soon[0]) == len(wanted(figures[number - 1])[0])
         (late,) = seen_at(stage, time + 0.5)
         goes_on = number < 2  # the first three frames have one topology
         after = wanted(figures[number + goes_on])
@@ -125,17 +135,17 @@ def test_the_camera_s_picture_is_the_picture(tmp_path: Path, relief: str | None)
     (camera,) = (UsdGeom.Camera(p) for p in stage.Traverse() if p.IsA(UsdGeom.Camera))
     frustum = camera.GetCamera(0).frustum
     matrix = np.array(frustum.ComputeViewMatrix() * frustum.ComputeProjectionMatrix())
-    cache = UsdGeom.XformCache(0)
-    for prim in stage.Traverse():
-        if prim.IsA(UsdGeom.Mesh):
-            points = np.array(UsdGeom.Mesh(prim).GetPointsAttr().Get(0))
-            placed = np.c_[points, np.ones(len(points))] @ np.array(
-                cache.GetLocalToWorldTransform(prim)
-            )
-            shown = (placed @ matrix)[:, :3]
+    (mesh, *_) = (UsdGeom.Mesh(prim) for prim in stage.Traverse() if prim.IsA(UsdGeom.Mesh))
+    points = np.array(mesh.GetPointsAttr().Get(0))
+    world = np.array(mesh.ComputeLocalToWorldTransform(0))
+    for height in {points[:, 2].min(), points[:, 2].max()}:
+        placed = np.c_[points[:, :2], np.full_like(points[:, 2], height), np.ones(len(points))]
+        shown = placed @ world @ matrix
+        shown = shown[:, :3] / shown[:, 3:]
+        assert (abs(shown) <= 1 + 1e-6).all()
+        if relief is None:
             np.testing.assert_allclose(shown[:, 0], points[:, 0] / WIDTH * 2 - 1, atol=1e-5)
             np.testing.assert_allclose(shown[:, 1], points[:, 1] / HEIGHT * 2 - 1, atol=1e-5)
-            assert (abs(shown[:, 2]) <= 1).all()
 
 
 @pytest.mark.parametrize("options", [{}, {"usd_single": True}, {"relief": "1"}], ids=str)

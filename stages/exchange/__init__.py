@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 FORMATS = {
     ".csv": "stages.exchange.table:Table",
+    ".dxf": "stages.exchange.dxf.document:Dxf",
     ".glb": "stages.exchange.solids.gltf:Gltf",
     ".json": "stages.exchange.lottie.document:Lottie",
     ".npz": "stages.exchange.arrays:Arrays",

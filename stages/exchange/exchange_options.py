@@ -30,7 +30,7 @@ class ExchangeOptions:
     """Decimals of positions."""
     svg_merge: bool = field(
         default=False,
-        metadata={"help": "make one path of neighbours that have the same colour in .svg"},
+        metadata={"help": "make one path of neighbours that have the same colour in .svg and .dxf"},
     )
     """Whether neighbours of one colour become one path."""
 
@@ -44,11 +44,11 @@ class ExchangeOptions:
     )
     """How linear colours are written."""
 
-    svg_mm: float = field(
+    mm: float = field(
         default=0.0,
         metadata={
-            "help": "width of the picture in .svg on paper, in millimetres, for plotters and "
-            "cutters; 0 for a size in pixels",
+            "help": "width of .svg and .dxf in millimetres, for plotters and cutters; 0 for a size "
+            "in pixels, each a millimetre in .dxf",
             "metavar": "MM",
         },
     )
@@ -91,9 +91,9 @@ class ExchangeOptions:
             raise OptionError(
                 f"--svg-precision {self.svg_precision}: must lie between 0 and {MAX_PRECISION}"
             )
-        if not 0.0 <= self.svg_mm <= MAX_WIDTH:
+        if not 0.0 <= self.mm <= MAX_WIDTH:
             raise OptionError(
-                f"--svg-mm {self.svg_mm:g}: must lie between 0 (a size in pixels) and {MAX_WIDTH}"
+                f"--mm {self.mm:g}: must lie between 0 (a size in pixels) and {MAX_WIDTH}"
             )
         if self.svg_gradients not in GRADIENTS:
             raise OptionError(

@@ -10,10 +10,12 @@ METRES = 0.001
 
 @dataclass(frozen=True)
 class Viewpoint:
-    """A place above the middle of the picture; what is seen does not depend on how high it is."""
+    """A place above the middle of the picture from which all of it lies in sight."""
 
     distance: float
     """Above black, or the plane of a flat picture [px]."""
+    free: float
+    """Above what is highest [px]."""
     near: float
     """Where sight begins, from the camera [px]."""
     far: float
@@ -21,11 +23,11 @@ class Viewpoint:
 
     @classmethod
     def of(cls, film: Film) -> "Viewpoint":
-        """High enough above all that a film shows.
+        """Two longer sides above all that a film shows.
 
         Args:
             film: Gives the size and the relief.
         """
         side, relief = max(film.size), film.options.heights
         top = 0.0 if relief is None else abs(relief.height) * side
-        return cls(top + side, side / 8, top + 2 * side)
+        return cls(top + 2 * side, 2 * side, side, top + 3 * side)

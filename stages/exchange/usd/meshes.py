@@ -1,12 +1,15 @@
 """Meshes of USD: what frames of one topology share, and what of it is seen when."""
 
 import numpy as np
-from pxr import Sdf, Usd, UsdGeom, Vt
+from pxr import Gf, Sdf, Usd, UsdGeom, Vt
 
 from stages.exchange.solids.runs import MeshPose, MeshRun
 
 ALWAYS = Usd.TimeCode.Default()
 """The value of what never changes, and for programs that play nothing."""
+STEP = Usd.TimeCode.SafeStep()
+"""Right before a frame [frames]: what is told there holds up to it, where else programs would go
+straight to the next value."""
 
 
 def add_runs(
@@ -62,7 +65,7 @@ def add_one_mesh(
         for pose, time in zip(run.poses, own, strict=True):
             _tell_pose(mesh, pose, time)
         if place < len(times):
-            _tell_pose(mesh, run.poses[-1], times[place] - Usd.TimeCode.SafeStep())
+            _tell_pose(mesh, run.poses[-1], times[place] - STEP)
 
 
 def _mesh_below(parent: UsdGeom.Xform, name: str, is_flat: bool) -> UsdGeom.Mesh:
@@ -92,7 +95,8 @@ def _tell_pose(mesh: UsdGeom.Mesh, pose: MeshPose, time: Usd.TimeCode | float) -
 
 
 def _tell_life(mesh: UsdGeom.Mesh, begin: float, start: float, end: float | None) -> None:
-    """Show a mesh in its time only.
+    """Show a mesh in its time only: by its visibility, and by a scale of 0 for programs, such as
+    Blender, that do not play that.
 
     Args:
         mesh: The mesh.
@@ -100,11 +104,17 @@ def _tell_life(mesh: UsdGeom.Mesh, begin: float, start: float, end: float | None
         start: The first one of the clip; what is told of it holds before, too.
         end: The first one of the next mesh, or None.
     """
-    seen, hidden = UsdGeom.Tokens.inherited, UsdGeom.Tokens.invisible
-    shown = mesh.CreateVisibilityAttr()
-    shown.Set(seen if begin == start else hidden)
+    shown, scale = mesh.CreateVisibilityAttr(), mesh.AddScaleOp()
+
+    def _show(seen: bool, time: Usd.TimeCode | float) -> None:
+        shown.Set(UsdGeom.Tokens.inherited if seen else UsdGeom.Tokens.invisible, time)
+        scale.Set(Gf.Vec3f(seen), time)
+
+    _show(begin == start, ALWAYS)
     if begin > start:
-        shown.Set(hidden, start)
-    shown.Set(seen, begin)
+        _show(False, start)
+        _show(False, begin - STEP)
+    _show(True, begin)
     if end is not None:
-        shown.Set(hidden, end)
+        _show(True, end - STEP)
+        _show(False, end)

@@ -8,9 +8,10 @@ from pxr import Gf, Tf, Usd, UsdGeom
 
 from stages.exchange.film import Film
 from stages.exchange.solids.viewpoint import METRES, Viewpoint
+from stages.exchange.usd.material import add_colors
 
-TENTHS = 10
-"""Apertures of cameras are told in tenths of a unit."""
+APERTURE = 360.0
+"""Width of the camera's film [tenths of a unit, which is a millimetre]: that of 35 mm."""
 
 
 def saved_scene(
@@ -45,6 +46,7 @@ def saved_scene(
     picture = UsdGeom.Xform.Define(stage, root.GetPath().AppendChild("picture"))
     picture.AddTranslateOp().Set(Gf.Vec3d(-width / 2, -height / 2, 0))
     add_meshes(picture)
+    add_colors(picture)
     _add_camera(root, film)
     try:
         stage.GetRootLayer().Export(str(path), comment="made by trimotion")
@@ -53,11 +55,15 @@ def saved_scene(
 
 
 def _add_camera(root: UsdGeom.Xform, film: Film) -> None:
+    """A camera whose picture is the picture; with a relief, as large as its highest places are.
+
+    It is no orthographic one, since Blender takes the apertures of those for ten times as large.
+    """
     width, height = film.size
     view = Viewpoint.of(film)
     camera = UsdGeom.Camera.Define(root.GetPrim().GetStage(), root.GetPath().AppendChild("camera"))
     camera.AddTranslateOp().Set(Gf.Vec3d(0, 0, view.distance))
-    camera.CreateProjectionAttr(UsdGeom.Tokens.orthographic)
-    camera.CreateHorizontalApertureAttr(TENTHS * width)
-    camera.CreateVerticalApertureAttr(TENTHS * height)
+    camera.CreateHorizontalApertureAttr(APERTURE)
+    camera.CreateVerticalApertureAttr(APERTURE * height / width)
+    camera.CreateFocalLengthAttr(APERTURE * view.free / width)
     camera.CreateClippingRangeAttr(Gf.Vec2f(view.near, view.far))
