@@ -12,7 +12,7 @@ from typing import Any
 from warp_kernels.device.kernel_cache import settle_cache
 from warp_kernels.errors import OptionError, TrimotionError
 
-PATIENCE = 20.0
+PATIENCE = 60.0
 """How long to wait for the scheduler [s]."""
 _LOCAL = re.compile(r"local:(\d+)")
 

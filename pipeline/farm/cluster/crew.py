@@ -203,16 +203,15 @@ class Crew:
     def _welcome(self, new: Mapping[str, str]) -> None:
         """Take workers in: they must be the same program, and get the source if they lack it."""
         told = self._client.run(greet, self._errand, workers=list(new), on_error="return")
-        gone = [address for address, one in told.items() if not isinstance(one, Greeting)]
-        for address in gone:
-            if isinstance(told[address], ImportError):
+        greetings = {address: one for address, one in told.items() if isinstance(one, Greeting)}
+        for address, one in told.items():
+            if address in greetings:
+                _check_versions(address, one)
+            elif not isinstance(one, OSError):  # which says that it went meanwhile
                 raise OptionError(
-                    f"worker {address}: has no trimotion ({told[address]}); install this version "
-                    "there"
+                    f"worker {address}: does not know this program ({one}); install trimotion "
+                    f"{program_version()} there"
                 )
-        greetings = {address: told[address] for address in told if address not in gone}
-        for address, greeting in greetings.items():
-            _check_versions(address, greeting)
         strangers = [address for address, one in greetings.items() if not one.shares]
         if strangers:
             self._send_source(strangers)

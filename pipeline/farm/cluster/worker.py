@@ -68,16 +68,15 @@ class UnwantedError(Exception):
     """Whoever wanted a shot is gone, or wants it no more."""
 
 
-def greet(errand: Errand) -> Greeting:
+def greet(errand: Errand, dask_worker: Any) -> Greeting:
     """Say who this worker is.
 
     Args:
         errand: The run.
+        dask_worker: The worker; Dask gives it.
     """
-    from distributed import get_worker
-
     versions = {"trimotion": program_version(), **library_versions()}
-    return Greeting(versions, get_worker().state.nthreads, _shares(errand))
+    return Greeting(versions, dask_worker.state.nthreads, _shares(errand))
 
 
 def receive(errand: Errand, offset: int, content: bytes) -> None:
