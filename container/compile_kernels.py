@@ -54,22 +54,21 @@ def solve_all(frames: list[np.ndarray]) -> list[trimotion.Triangulation]:
 
 
 def draw_all(solved: list[trimotion.Triangulation]) -> None:
-    """Draw every style and move."""
+    """Draw every style."""
     for one in solved:
         for style in STYLES:
             if style != "texture":  # which wants a picture, and has kernels of its own in a job
                 one.draw([style], scale=2)
-    for move in MOVES:
-        solved[0].draw(["flat", "edges"], moves=move)
 
 
 def animate_all(frames: list[np.ndarray], folder: Path) -> None:
     """Make films as commands do, with triangles that fade in over others."""
     for number, frame in enumerate(frames):
         (folder / f"in_{number:04d}.png").write_bytes(encode_still(frame, "png", None))
+    source = folder / "in_####.png"
     for style in ("flat", "gradient", "hatching"):
-        output = folder / f"{style}.mp4"
-        trimotion.animate(folder / "in_####.png", output, styles=[style], blend=2, **FOLLOWED)
+        trimotion.animate(source, folder / f"{style}.mp4", styles=[style], blend=2, **FOLLOWED)
+    trimotion.animate(source, folder / "moved.mp4", moves=list(MOVES), **FOLLOWED)
 
 
 def main() -> int:

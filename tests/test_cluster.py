@@ -155,9 +155,11 @@ def test_command(film: Path, whole: dict, cluster: Mapping, tmp_path: Path, caps
     assert main(["solve", str(film), "-o", str(track), *options]) == 0
     assert rows_of(track) == whole
     assert f"{SHOTS * LENGTH} frames" in capsys.readouterr().err
-    options[5] = "9000"
+    options += ["--device", "cuda:99"]
     assert main(["solve", str(film), "-o", str(tmp_path / "d.mtrk"), *options, "-q"]) == 2
-    assert capsys.readouterr().err.count("\n") == 1
+    captured = capsys.readouterr()
+    assert captured.err.count("\n") == 1
+    assert "cuda:99" in captured.err
 
 
 def test_other_versions_are_refused() -> None:
