@@ -18,6 +18,7 @@ from typing import Any, NoReturn
 from pipeline.commands.crash_watch import watch_for_crashes
 from pipeline.commands.grammar import build_parser
 from pipeline.commands.inputs import inputs_of, joined, take
+from pipeline.printable import one_line, printable
 
 INTERRUPTED = 130
 TERMINATED = 143
@@ -98,6 +99,17 @@ def run_conversion(arguments: argparse.Namespace) -> int:
     return convert_all(arguments, _report)
 
 
+def run_edit(arguments: argparse.Namespace) -> None:
+    """Serve the editor.
+
+    Args:
+        arguments: What the user gave; options that were left out are absent.
+    """
+    from pipeline.commands.editing.edit import edit
+
+    edit(arguments)
+
+
 def run_preview(arguments: argparse.Namespace) -> None:
     """Draw a few moments.
 
@@ -106,7 +118,7 @@ def run_preview(arguments: argparse.Namespace) -> None:
     """
     from pipeline.commands.convert import preview_of
 
-    print(preview_of(arguments))
+    print(printable(preview_of(arguments)))
 
 
 def run_plan(arguments: argparse.Namespace) -> None:
@@ -192,7 +204,7 @@ def run_timeline(arguments: argparse.Namespace) -> None:
     """
     from pipeline.commands.timeline_check import check_timeline
 
-    print(check_timeline(arguments))
+    print(printable(check_timeline(arguments)))
 
 
 def run_listen(arguments: argparse.Namespace) -> None:
@@ -205,7 +217,7 @@ def run_listen(arguments: argparse.Namespace) -> None:
 
     told = listen_to(arguments)
     if told:
-        print(told)
+        print(printable(told))
 
 
 def run_completion(arguments: argparse.Namespace) -> None:
@@ -252,6 +264,7 @@ COMMANDS: dict[str, Command] = {
     "animate": run_conversion,
     "solve": run_conversion,
     "render": run_conversion,
+    "edit": run_edit,
     "preview": run_preview,
     "plan": run_plan,
     "join": run_join,
@@ -315,7 +328,7 @@ def _left_over(arguments: argparse.Namespace) -> str:
 def _fail(text: str, code: int) -> int:
     from pipeline.progress import tell
 
-    tell("trimotion: error: " + " ".join(text.split()), sys.stderr)
+    tell(f"trimotion: error: {one_line(text)}", sys.stderr)
     return code
 
 

@@ -108,7 +108,7 @@ class EditedFrames:
         self._waiting.append(_Found(ready.shot, self._aside.put(ready.frame), self._snapshot))
         if index in self._log.frames:
             yield from self._edit()
-        elif self._log.next_frame(index) is None:
+        if self._log.next_frame(index + 1) is None:
             yield from self._given()
 
     def _given(self) -> Iterator[Solved]:

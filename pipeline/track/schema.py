@@ -20,11 +20,13 @@ them is the last one in force. `pipeline.edit_log.journal` writes both, from the
 until then the log with which the frames were solved, in the header, is all that there is.
 """
 
+import os
 import sqlite3
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from pipeline.track.guard import guard
 from stages.media.writing.commit import PendingFile, output_error
 from warp_kernels.errors import OutputError, TrackError
 
@@ -220,14 +222,14 @@ def _connect(path: Path, mode: str) -> sqlite3.Connection:
     connection = sqlite3.connect(
         address, uri=True, timeout=WAIT, isolation_level=None, check_same_thread=False
     )
-    connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, MOST_BYTES)
+    guard(connection, MOST_BYTES)
     return connection
 
 
 def _check_file(path: Path) -> None:
     """Refuse what is no file of SQLite."""
     try:
-        if not (path.is_file() or path.is_dir() or not path.exists()):
+        if os.path.exists(path) and not (path.is_file() or path.is_dir()):
             raise TrackError(f"{path}: is not a regular file; give the name of a track")
         with path.open("rb") as file:
             head = file.read(100)
