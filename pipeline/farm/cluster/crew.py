@@ -12,7 +12,7 @@ from typing import Any
 from pipeline.farm.cluster.worker import (
     Errand,
     Greeting,
-    Outcome,
+    Fate,
     forget,
     greet,
     receive,
@@ -159,7 +159,7 @@ class Crew:
         if future.status != "finished":
             self._again(one.number, f"worker {one.worker} lost it")
             return
-        outcome: Outcome = future.result()
+        outcome: Fate = future.result()
         if outcome.result is None:
             if outcome.is_final:
                 raise ClusterError(outcome.error, outcome.exit_code)

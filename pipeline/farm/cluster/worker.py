@@ -49,7 +49,7 @@ class Greeting:
 
 
 @dataclass(frozen=True)
-class Outcome:
+class Fate:
     """What became of a shot."""
 
     result: Any = None
@@ -99,7 +99,7 @@ def forget(errand: Errand) -> None:
     shutil.rmtree(_received(errand).parent, ignore_errors=True)
 
 
-def solve_there(errand: Errand, work: Work, part: Part, number: int, shares: bool) -> Outcome:
+def solve_there(errand: Errand, work: Work, part: Part, number: int, shares: bool) -> Fate:
     """Solve a shot on this worker.
 
     Args:
@@ -116,16 +116,16 @@ def solve_there(errand: Errand, work: Work, part: Part, number: int, shares: boo
         report = _Report(errand.token, number)
         if shares:
             with alone(part.output.track, patience=ORPHANS):
-                return Outcome(_solved(errand, work, part, report))
+                return Fate(_solved(errand, work, part, report))
         return _solved_apart(errand, work, part, report)
     except TrimotionError as error:
-        return Outcome(error=str(error), exit_code=error.exit_code)
+        return Fate(error=str(error), exit_code=error.exit_code)
     except UnwantedError:
-        return Outcome(error="stopped", is_final=False)
+        return Fate(error="stopped", is_final=False)
     except Exception as error:
         short = is_out_of_memory(error)
         text = "out of memory" if short else f"internal error ({type(error).__name__}: {error})"
-        return Outcome(error=text, is_final=False)
+        return Fate(error=text, is_final=False)
 
 
 def _solved(errand: Errand, work: Work, part: Part, report: Progress) -> Any:
@@ -135,16 +135,16 @@ def _solved(errand: Errand, work: Work, part: Part, report: Progress) -> Any:
     return result
 
 
-def _solved_apart(errand: Errand, work: Work, part: Part, report: Progress) -> Outcome:
+def _solved_apart(errand: Errand, work: Work, part: Part, report: Progress) -> Fate:
     """Solve a shot from what was sent, to a track that is sent back."""
     source = _received(errand)
     if not source.is_file():
-        return Outcome(error="the source did not arrive", is_final=False)
+        return Fate(error="the source did not arrive", is_final=False)
     work = replace(work, options=replace(work.options, source=source))
     with tempfile.TemporaryDirectory(dir=source.parent) as folder:
         track = Path(folder) / "part.mtrk"
         result = _solved(errand, work, Part(part.frames, Output(track=track)), report)
-        return Outcome(result, track.read_bytes())
+        return Fate(result, track.read_bytes())
 
 
 def _shares(errand: Errand) -> bool:
