@@ -11,8 +11,8 @@ from typing import Any
 
 from pipeline.farm.cluster.worker import (
     Errand,
-    Greeting,
     Fate,
+    Greeting,
     forget,
     greet,
     receive,
