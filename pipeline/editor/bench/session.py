@@ -154,6 +154,8 @@ class Session:
             worked = Worked(stored.mesh, stored.locks)
             return self.easel.fitted(self.picture(frame), worked, model)
         worked = self.worked(frame)
+        if model is self.film.model and worked is self._film_ground(frame):
+            return self.film.snapshot(frame)  # whose colours keep to those of the frames before
         known = self._fitted.get((frame, model.name))
         if known is None or known[0] is not worked:
             known = worked, self.easel.fitted(self.picture(frame), worked, model)
@@ -277,6 +279,11 @@ class Session:
         while len(self._replays) > MOST_FRAMES:
             self._replays.popitem(last=False)
         return self._replays[key].after(edits)
+
+    def _film_ground(self, frame: int) -> Worked | None:
+        """A frame of the film as edits are made on it, if any were looked at."""
+        known = self._replays.get((frame, Ground.FILM))
+        return None if known is None else known.ground
 
     def _ground(self, frame: int, ground: Ground) -> Worked:
         if ground is Ground.ANEW:
