@@ -39,7 +39,7 @@ def places(given: Path) -> Iterator[tuple[str, str]]:
     """
     for words in (SOLVE, ANIMATE):
         for name, change in CHANGES.items():
-            yield f"{words[0]}: {name}", _changed(given, words, change)
+            yield f"{words[0]}: {name}", changed(given, words, change)
     wanted = content_of(given / "film.mtrk")
     for name, env in _machines(given).items():
         yield f"solve: {name}", _solved(given, env, wanted)
@@ -49,7 +49,7 @@ def places(given: Path) -> Iterator[tuple[str, str]]:
     os.chmod(given / "locked", 0o700)
 
 
-def _changed(given: Path, words: tuple[str, ...], change: Callable[[Path], None]) -> str:
+def changed(given: Path, words: tuple[str, ...], change: Callable[[Path], None]) -> str:
     """Change something in the middle of a run; gives what is wrong."""
     folder = given.parent / "changed"
     shutil.rmtree(folder, ignore_errors=True)

@@ -7,14 +7,18 @@ from pathlib import Path
 from benchmarks.fuzz.mutate import broken_text
 from pipeline.options.command_line import job_options
 
-OTHERS = {
-    "cuts": "[3, 9, 12]\n",
-    "layout": "1.5,2\n10 20\n30;4\n7,8\n",
-    "edits": '{"edit": "flip_edge", "frame": 0, "at": [13.5, 12.25]}\n',
-    "beats": "0.5\n1.0\n1.5\n2.0\n",
-    "palette": "#123\n#fa0\nwhite\n",
-}
-"""Texts that other options read, by option."""
+OTHERS = (
+    ("cuts", "cuts.json", "[3, 9, 12]\n"),
+    ("layout", "points.csv", "1.5,2\n10 20\n30;4\n7,8\n"),
+    ("layout", "points.json", "[[1.5, 2], [10, 20], [7, 8]]\n"),
+    ("edits", "log.jsonl", '{"edit": "flip_edge", "frame": 0, "at": [13.5, 12.25]}\n'),
+    ("beats", "beats.txt", "0.5\n1.0\n1.5\n2.0\n"),
+    ("beats", "beats.json", '{"beats": [0.5, 1.0], "downbeats": [0.5], "meter": 2, "bpm": 120}\n'),
+    ("palette", "swatches.txt", "#123\n#fa0\nwhite\n"),
+    ("palette", "swatches.json", '["#123", {"name": "x", "hex": "#fa0"}, [1, 2, 3]]\n'),
+    ("palette", "swatches.gpl", "GIMP Palette\nName: x\n#\n1 2 3 one\n200 100 0 two\n"),
+)
+"""Option, name and text of what other options read."""
 FORMS = {"layout": "points:{}"}
 """How an option names its file, where the name does not stand alone."""
 
@@ -45,11 +49,11 @@ def broken(folder: Path, seed: int) -> Iterator[tuple[str, ...]]:
         seed: Chooses the damage.
     """
     chance = random.Random(seed)
-    texts = {"preset": preset(), **OTHERS}
+    texts = (*[("preset", "preset.toml", preset())] * 4, *OTHERS)
     number = 0
     while True:
-        flag = ("preset", "preset", *OTHERS)[number % (2 + len(OTHERS))]
-        path = folder / f"broken.{'txt' if flag == 'palette' else flag}"
-        path.write_text(broken_text(texts[flag], chance), "utf-8", "surrogatepass")
+        flag, name, text = texts[number % len(texts)]
+        path = folder / f"broken-{name}"
+        path.write_text(broken_text(text, chance), "utf-8", "surrogatepass")
         yield f"--{flag}", FORMS.get(flag, "{}").format(path)
         number += 1

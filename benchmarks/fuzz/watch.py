@@ -21,8 +21,10 @@ PYTHON = re.compile(
 """What no message to a user holds."""
 LONGEST = 1500
 """Letters of a line at most."""
-SLOWEST = 20
-"""What takes longer hangs [s]."""
+SLOWEST = 20.0
+"""What takes longer to compute hangs [s of the CPU]: machines are busy."""
+STUCK = 300.0
+"""As does what waits for so long [s]."""
 
 
 class HangError(Exception):
@@ -43,7 +45,7 @@ class Watch:
     refused: int = 0
     """How many of them were told to be wrong."""
     slowest: float = 0.0
-    """The longest of all [s]."""
+    """The longest of all [s of the CPU]."""
     bad: list[str] = field(default_factory=list)
     """What was not as it must be."""
 
@@ -54,9 +56,9 @@ class Watch:
             what: What it is, for the report.
             work: Reads it.
         """
-        begun = time.monotonic()
+        begun = time.process_time()
         try:
-            with _at_most(SLOWEST):
+            with _at_most():
                 work()
         except TrimotionError as error:
             self.refused += 1
@@ -74,11 +76,11 @@ class Watch:
         """
         from pipeline.cli import main
 
-        begun, said = time.monotonic(), io.StringIO()
+        begun, said = time.process_time(), io.StringIO()
         code: int | str
         try:
             with (
-                _at_most(SLOWEST),
+                _at_most(),
                 contextlib.redirect_stderr(said),
                 contextlib.redirect_stdout(io.StringIO()),
             ):
@@ -104,7 +106,7 @@ class Watch:
 
     def _count(self, begun: float) -> None:
         self.count += 1
-        self.slowest = max(self.slowest, time.monotonic() - begun)
+        self.slowest = max(self.slowest, time.process_time() - begun)
 
     def __str__(self) -> str:
         return (
@@ -120,14 +122,18 @@ def peak() -> int:
 
 
 @contextmanager
-def _at_most(seconds: int) -> Iterator[None]:
+def _at_most() -> Iterator[None]:
     def late(*_: object) -> None:
-        raise HangError(f"takes longer than {seconds} s")
+        raise HangError(f"takes longer than {SLOWEST:.0f} s")
 
-    before = signal.signal(signal.SIGALRM, late)
-    signal.alarm(seconds)
+    timers = {signal.SIGPROF: (signal.ITIMER_PROF, SLOWEST)}
+    timers[signal.SIGALRM] = (signal.ITIMER_REAL, STUCK)
+    before = {sign: signal.signal(sign, late) for sign in timers}
+    for timer, seconds in timers.values():
+        signal.setitimer(timer, seconds)
     try:
         yield
     finally:
-        signal.alarm(0)
-        signal.signal(signal.SIGALRM, before)
+        for sign, (timer, _) in timers.items():
+            signal.setitimer(timer, 0)
+            signal.signal(sign, before[sign])
