@@ -344,7 +344,7 @@ def test_a_switch_that_is_none_is_told() -> None:
 
 
 def test_beats_of_a_name_that_no_file_can_have_are_told() -> None:
-    with pytest.raises(OptionError, match=r"^show\.toml:1:10: .*write the name of a file"):
+    with pytest.raises(OptionError, match=r"^show\.toml:1:10: .*; check the name"):
         parse_timeline(f'beats = "{"a" * 5000}"', "show.toml", Look())
 
 
