@@ -204,7 +204,7 @@ LINES = [
     ('{"edit": "flip_edge", "frame": 3, "at": [1, NaN]}', "line 2: flip_edge: at: nan is no"),
     ('{"edit": "flip_edge", "frame": -3, "at": [1, 1]}', "line 2: frame -3 is none"),
     ('{"edit": "flip_edge", "frame": 3, "at": [1, 1], "by": 2}', "has no 'by'; it has frame, at"),
-    ('{"edit": "flip_edge", "frame": true, "at": [1, 1]}', "frame: True instead of int"),
+    ('{"edit": "flip_edge", "frame": true, "at": [1, 1]}', "frame: True instead of a whole number"),
     ('{"edit": "lock", "class": "Lock", "frame": 1}', "lock has no 'class'"),
 ]
 
