@@ -6,6 +6,7 @@ Where no Chromium is found these tests are skipped, unless FAIL_WITHOUT_CHROMIUM
 import io
 import os
 from collections.abc import Iterator
+from dataclasses import fields
 from typing import Any
 
 import numpy as np
@@ -15,9 +16,11 @@ from playwright.sync_api import Browser, Page, expect, sync_playwright
 
 from pipeline.edit_log.journal import EditJournal
 from stages.hand import EDITS
-from tests.editing import Served, browser_path, served, write_job
+from tests.editing import Served, browser_path, served, write_clip_job, write_job
+from warp_kernels.styles import STYLES
 
 ARGUMENTS = ["--no-sandbox", "--enable-unsafe-swiftshader"]
+expect.set_options(timeout=60_000)  # a machine may be busy with other tests
 SIZE = {"width": 1000, "height": 640}
 
 
@@ -43,13 +46,20 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
         yield found
 
 
+@pytest.fixture(scope="module")
+def clip_server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+    """A server with a clip of two shots."""
+    with served(write_clip_job(tmp_path_factory.mktemp("film"))) as found:
+        yield found
+
+
 @pytest.fixture
 def page(browser: Browser, server: Served) -> Iterator[Page]:
     """The page, open, with all edits of earlier tests undone; what it complains of fails."""
     with EditJournal(server.studio.session.path) as journal:
         journal.go_to(0)
     page = browser.new_page(viewport=SIZE)
-    page.set_default_timeout(20_000)
+    page.set_default_timeout(60_000)
     problems: list[str] = []
     page.on("pageerror", lambda error: problems.append(str(error)))
     page.on("console", lambda told: problems.append(told.text) if told.type == "error" else None)
@@ -300,3 +310,67 @@ def test_the_layers_are_drawn(page: Page) -> None:
     assert np.abs(picture - (60 * 200 / 96, 50 * 200 / 64, 60)).max() < 8
     assert np.abs(shot(1, 1)[spots].mean(axis=(0, 1)) - picture).max() < 60
     assert shot(0, 0)[spots].max() < 40
+
+
+def test_styles_are_stacked_and_changed(page: Page, server: Served) -> None:
+    """The panel is made from the registry; what it says is what the command line says."""
+    assert page.locator("#add-style option").count() == 1 + len(STYLES)
+    page.locator("#add-style").select_option("edges")
+    width = page.locator("#set-style-width")
+    expect(width).to_be_visible()
+    field = next(f for f in fields(STYLES["edges"]) if f.name == "width")
+    assert [float(width.get_attribute(e) or "") for e in ("min", "max")] == [
+        *field.metadata["range"]
+    ]
+    width.fill("3.5")
+    command = page.locator("#command-render")
+    expect(command).to_contain_text("--style flat --style edges:width=3.5")
+    page.locator("[data-style=edges] button").first.focus()
+    page.keyboard.press("Alt+ArrowDown")
+    expect(command).to_contain_text("--style edges:width=3.5 --style flat")
+    page.locator("[data-style=edges]").drag_to(page.locator("[data-style=flat]"))
+    expect(command).to_contain_text("--style flat --style edges:width=3.5")
+    page.locator("#set-style-color").fill("#zzz")
+    page.locator("#set-style-color").press("Enter")
+    expect(page.locator("#toast")).to_contain_text("#zzz")
+
+
+def test_a_style_is_painted_onto_triangles(page: Page, server: Served) -> None:
+    page.keyboard.press("t")
+    page.locator("#set-radius").fill("12")
+    page.locator("#set-paint").select_option("edges")
+    page.mouse.click(*place(page, 48, 32))
+    wait_for_edits(page, 1)
+    assert log_of(server) == ["style_region"]
+
+
+def test_time_and_the_way_through_a_shot(browser: Browser, clip_server: Served) -> None:
+    """Seek, edit, apply, compare, play and render: all that one does with a film."""
+    page = browser.new_page(viewport=SIZE)
+    page.set_default_timeout(60_000)
+    page.goto(clip_server.address.url)
+    expect(page.locator("#loading")).to_be_hidden()
+    strip = page.locator("#strip").bounding_box()
+    assert strip is not None
+    page.mouse.click(strip["x"] + strip["width"] * 3.5 / 12, strip["y"] + 10)
+    page.wait_for_function("() => trimotion.mesh?.frame === 3")
+    page.keyboard.press(".")
+    page.wait_for_function("() => trimotion.mesh?.frame === 4")
+    page.mouse.click(*place(page, *find(page, "face")))
+    wait_for_edits(page, 1)
+    expect(page.locator("#film-note")).to_contain_text("do not reach through their shots yet")
+    page.locator("#apply").click()
+    expect(page.locator("#film-note")).to_contain_text("The film follows all of your edits")
+    shown = {}
+    for view in ("before", "solved"):
+        page.locator(f"[data-view={view}]").click()
+        page.wait_for_function(f"() => trimotion.view === '{view}' && !trimotion.isLooking")
+        shown[view] = page.evaluate("() => trimotion.mesh.held.reduce((sum, one) => sum + one, 0)")
+    assert shown == {"before": 0, "solved": 1}
+    page.keyboard.press(" ")
+    page.wait_for_function("() => trimotion.player.shown > 1")
+    page.wait_for_function("() => !trimotion.isPlaying && trimotion.frame === 11")
+    page.locator("#render").click()
+    expect(page.locator("#toast")).to_contain_text("Rendering clip")
+    assert len(list(clip_server.studio.session.path.parent.glob("clip.2*.mp4"))) == 1
+    page.close()

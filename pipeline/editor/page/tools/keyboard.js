@@ -20,6 +20,7 @@ export class Keyboard {
       a: () => stage.setTool("edit"),
       b: () => stage.setTool("brush"),
       r: () => stage.setTool("region"),
+      t: () => stage.setTool("paint"),
       p: () => this.pin(),
       v: () => stage.setMode("vertex"),
       e: () => stage.setMode("edge"),
@@ -38,6 +39,9 @@ export class Keyboard {
       Enter: () => stage.click("left"),
       Escape: () => stage.letGo(),
       "?": () => help.showModal(),
+      " ": () => stage.togglePlay(),
+      ",": () => stage.step(-1),
+      ".": () => stage.step(1),
     };
     addEventListener("keydown", (event) => this.down(event));
     addEventListener("keyup", (event) => this.shift(event.shiftKey));
@@ -63,8 +67,10 @@ export class Keyboard {
       return;
     }
     if (event.ctrlKey || event.metaKey || event.altKey) return;
-    if (target instanceof HTMLSelectElement || (target instanceof HTMLInputElement && event.key.length > 1)) return;
-    if (!isOnStage && (event.key === "Enter" || event.key === "Tab" || event.key === " ")) return;
+    if (target instanceof HTMLSelectElement || isText(target)) return;
+    if (target instanceof HTMLInputElement && event.key.length > 1) return;
+    if (!isOnStage && (event.key === "Enter" || event.key === "Tab")) return;
+    if (target instanceof HTMLButtonElement && event.key === " ") return;
     if (this.stage.moving && this.type(event)) return;
     if (isOnStage && event.key === "Tab" && !event.shiftKey) {
       event.preventDefault();
@@ -137,4 +143,9 @@ export class Keyboard {
     event.preventDefault();
     return true;
   }
+}
+
+/** @param {EventTarget | null} target */
+function isText(target) {
+  return target instanceof HTMLInputElement && target.type !== "range";
 }

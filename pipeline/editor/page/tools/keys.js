@@ -16,6 +16,7 @@ export const HELP = [
     ["[ and ]", "radius of the brush"],
     ["O", "soft falloff of the brush"],
     ["R", "triangulate a region anew"],
+    ["T", "paint a style onto triangles"],
     ["P", "pin and unpin what is under the pointer"],
   ]],
   ["On what is under the pointer", [
@@ -25,6 +26,11 @@ export const HELP = [
     ["J", "flip the edge"],
     ["Enter", "what a left click does"],
     ["Arrows", "move the cursor (Shift: one pixel)"],
+  ]],
+  ["Time", [
+    ["Space", "play and pause"],
+    [", and .", "one frame back and on"],
+    ["Ctrl + Enter", "let the edits reach through their shot"],
   ]],
   ["View and history", [
     ["Ctrl + Z", "undo"],
@@ -52,5 +58,6 @@ export function fillHelp(dialog) {
 
 /** @param {string} keys */
 function shown(keys) {
+  if (keys === ", and .") return "<kbd>,</kbd> and <kbd>.</kbd>";
   return keys.split(/( \+ | and | or |, | )/).map((part) => (/^[^ ,]+$/.test(part) && !/^(and|or|on|an|in|a|drag|triangle|vertex|edge|Left|Right|Drag|Middle|Wheel)$/.test(part) ? `<kbd>${part}</kbd>` : part)).join("");
 }
