@@ -32,7 +32,7 @@ from warp_kernels.device.device import Device
 from warp_kernels.energy.solver_kernels import limiting_kernels, solving_kernels
 from warp_kernels.energy.workspace import Workspace
 
-SPRING = 39.0
+SPRING = 30.0
 """Strength of the temporal term where the motion is certain, as a multiple of the mean squared
 error of the mesh: what pulls at vertices without cause grows with what triangles cannot show."""
 RENEWED = 0.8

@@ -1,4 +1,4 @@
-"""What has arrived in a followed picture is left alone, and the rest comes out as if it were not."""
+"""What has arrived in a followed picture is left alone, and all else comes out the same."""
 
 import numpy as np
 import pytest

@@ -7,7 +7,7 @@ import numpy as np
 from stages.mesh import Mesh
 from stages.motion.correspondence import kept_rows
 
-LEAST_CHANGE = 0.02
+LEAST_CHANGE = 0.01
 """A vertex has arrived once the energy of the triangles around it changes by less than this part in
 a round."""
 FAINT = 1.0
