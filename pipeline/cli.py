@@ -99,6 +99,17 @@ def run_conversion(arguments: argparse.Namespace) -> int:
     return convert_all(arguments, _report)
 
 
+def run_edit(arguments: argparse.Namespace) -> None:
+    """Serve the editor.
+
+    Args:
+        arguments: What the user gave; options that were left out are absent.
+    """
+    from pipeline.commands.editing.edit import edit
+
+    edit(arguments)
+
+
 def run_preview(arguments: argparse.Namespace) -> None:
     """Draw a few moments.
 
@@ -253,6 +264,7 @@ COMMANDS: dict[str, Command] = {
     "animate": run_conversion,
     "solve": run_conversion,
     "render": run_conversion,
+    "edit": run_edit,
     "preview": run_preview,
     "plan": run_plan,
     "join": run_join,

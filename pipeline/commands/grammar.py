@@ -4,6 +4,7 @@ import argparse
 import re
 from typing import Any, NoReturn
 
+from pipeline.commands.editing.grammar import EDIT_ABOUT, EDIT_USAGE, add_edit_options
 from pipeline.commands.examples import ABOUT_ALL, EXAMPLES, shown
 from pipeline.commands.farm.grammar import (
     JOIN_ABOUT,
@@ -14,6 +15,7 @@ from pipeline.commands.farm.grammar import (
     add_plan_options,
 )
 from pipeline.commands.hearing.grammar import LISTEN_ABOUT, LISTEN_USAGE, add_listen_options
+from pipeline.commands.overview import COMMANDS_HELP
 from pipeline.commands.style_list import registry_help
 from pipeline.commands.unknown import no_command, unknown_arguments
 from pipeline.options.command_line import add_job_options
@@ -22,26 +24,6 @@ from pipeline.printable import one_line
 from pipeline.progress import CHOICES
 
 ABOUT = "Turn videos into coherent triangulated animations."
-
-COMMANDS_HELP = """\
-commands:
-  animate INPUT -o OUTPUT    convert a video, a still or numbered stills
-  solve INPUT -o JOB.mtrk    convert to a mesh track, from which any look can be drawn
-  render JOB.mtrk -o OUTPUT  draw a mesh track
-  preview INPUT              five moments of that, and the time that it would take
-  plan INPUT                 ranges of whole shots, for runs on several machines
-  join A.mtrk B.mtrk ... -o OUT.mtrk   put the tracks of ranges together
-  info FILE                  what a file is: a source or a mesh track
-  measure SOURCE OUTPUT      how close an output is to its source, and how coherent
-  styles [NAME]              styles and moves with their parameters; --sheet draws them
-  timeline SHOW.toml|NAME --check CLIP   what a timeline does when, without solving
-  listen SONG|CLIP -o SONG.beats.json   beats, bars, onsets and strengths of a sound
-  completion bash|zsh|fish   a script by which a shell completes all of this
-  help [COMMAND]             this text, or the options of a command
-
-trimotion COMMAND --help tells the options of a command, too.
-
-"""
 
 WHERE_PARAMETERS = """\
 trimotion styles lists every style and move with its parameters, trimotion styles NAME those of one.
@@ -111,6 +93,7 @@ def build_parser() -> OneLineParser:
     _add_animate(commands)
     _add_solve(commands)
     _add_render(commands)
+    _add_edit(commands)
     _add_preview(commands)
     _add_plan(commands)
     _add_join(commands)
@@ -172,6 +155,13 @@ def _add_render(commands: Any) -> None:
     )
     add_job_options(parser, "render")
     _add_messages(parser)
+
+
+def _add_edit(commands: Any) -> None:
+    parser = _command(commands, "edit", EDIT_ABOUT, EDIT_USAGE)
+    add_edit_options(parser)
+    add_job_options(parser, "edit")
+    _add_telling(parser.add_argument_group("messages"))
 
 
 def _add_preview(commands: Any) -> None:

@@ -27,8 +27,8 @@ def unknown_arguments(arguments: Sequence[str], known: Sequence[str], command: s
         return f"{arguments[0]!r}: unknown argument{apart}"
     named = [option for option in job_options() if option.flag == first.lstrip("-")]
     owners = [name for name, has in COMMAND_OPTIONS.items() if any(map(has, named))]
-    # what preview and timeline have is that of animate, and what plan has that of solve
-    owners = [name for name in owners if name not in ("preview", "timeline", "plan")]
+    # what preview and timeline have is that of animate, and what plan and edit have that of solve
+    owners = [name for name in owners if name not in ("preview", "timeline", "plan", "edit")]
     if owners:
         some = ", ".join(owners[:-1])
         owned = f"{some} and {owners[-1]}" if some else owners[-1]

@@ -86,6 +86,7 @@ class SolveKeywords(AnimatorKeywords, SourceKeywords, total=False):
     audio_offset: float
     edits: Any
     jobs: int
+    cluster: str | None
     overwrite: bool
     resume: bool
 
@@ -102,6 +103,7 @@ class LookKeywords(TypedDict, total=False):
     grade: str | None
     size: str | tuple[int, int] | None
     scale: float | None
+    samples: int
     fit: str
     background: str | None
     blend: int
@@ -125,6 +127,7 @@ class OutputKeywords(TypedDict, total=False):
     mm: float
     relief: str | None
     lottie_limit: int
+    usd_single: bool
 
 
 class RenderKeywords(RangeKeywords, LookKeywords, OutputKeywords, DeviceKeywords, total=False):
@@ -148,6 +151,7 @@ class DrawKeywords(DeviceKeywords, total=False):
     grade: str | None
     size: str | tuple[int, int] | None
     scale: float | None
+    samples: int
     fit: str
     background: str | None
 
@@ -180,7 +184,8 @@ def _for_pictures(option: Option) -> bool:
 
 
 DRAWN = (
-    *("styles", "moves", "palette", "grade", "output_size", "scale", "fit", "background"),
+    *("styles", "moves", "palette", "grade", "output_size", "scale", "samples", "fit"),
+    "background",
     *("device", "threads"),
 )
 """Options that say how one frame is drawn."""

@@ -13,6 +13,7 @@ from pipeline.options.solve_options import SolveOptions
 from pipeline.track.cuts import read_cuts
 from pipeline.track.earlier import up_to_date
 from pipeline.track.identity import SourceIdentity, identity_of
+from pipeline.track.nouns import noun_for
 from pipeline.track.plain_values import UnknownNameError, from_plain, to_plain
 from pipeline.version import library_versions, program_version
 from stages.media import FrameRange, MediaInfo
@@ -86,9 +87,17 @@ class Header:
     @cached_property
     def solve(self) -> SolveOptions:
         """The options again, without a list of cuts and without pictures, which draw nothing."""
+        return self._solve(arrays=False)
+
+    @property
+    def whole_solve(self) -> SolveOptions:
+        """The same with pictures, by which a shot of the track can be solved again."""
+        return self._solve(arrays=True)
+
+    def _solve(self, *, arrays: bool) -> SolveOptions:
         listed = isinstance(self.options["cuts"], list)
         options = {**self.options, "cuts": "none"} if listed else self.options
-        solve: SolveOptions = from_plain(SolveOptions, options, arrays=False)
+        solve: SolveOptions = from_plain(SolveOptions, options, arrays=arrays)
         return solve
 
     def with_range(self, frame_range: FrameRange) -> "Header":
@@ -141,11 +150,11 @@ def read_header(path: Path, connection: sqlite3.Connection) -> Header:
             raise UnknownNameError(f"the fact {reprlib.repr(min(map(str, unknown)))}")
         header = Header(
             program=_text(rows["program"]),
-            libraries={_text(k): _text(v) for k, v in dict(rows["libraries"]).items()},
-            options=up_to_date(dict(rows["options"])),
+            libraries={_text(k): _text(v) for k, v in _table(rows["libraries"]).items()},
+            options=up_to_date(_table(rows["options"])),
             source=from_plain(SourceIdentity, rows["source"]),
             info=from_plain(MediaInfo, rows["info"]),
-            model=COLOR_MODELS[_text(rows["model"])],
+            model=_model(_text(rows["model"])),
             finished=rows["finished"],
         )
         _check_info(header.info)
@@ -156,8 +165,9 @@ def read_header(path: Path, connection: sqlite3.Connection) -> Header:
             "version that made it, or solve again"
         ) from error
     except (AttributeError, KeyError, TypeError, ValueError, RecursionError, OptionError) as error:
+        reason = f"{error} is missing" if isinstance(error, KeyError) else error
         raise TrackError(
-            f"{path}: the track's header is damaged ({error}); take a copy of it, or solve again"
+            f"{path}: the track's header is damaged ({reason}); take a copy of it, or solve again"
         ) from error
     return header
 
@@ -176,8 +186,20 @@ def _refused(name: str) -> None:
 
 def _text(value: Any) -> str:
     if not isinstance(value, str):
-        raise ValueError(f"{type(value).__name__} instead of text")
+        raise ValueError(f"{noun_for(value)} instead of a text")
     return value
+
+
+def _table(value: Any) -> dict[str, Any]:
+    if not isinstance(value, dict):
+        raise ValueError(f"{noun_for(value)} instead of a table")
+    return value
+
+
+def _model(name: str) -> ColorModel:
+    if name not in COLOR_MODELS:
+        raise ValueError(f"colours {reprlib.repr(name)}")
+    return COLOR_MODELS[name]
 
 
 def _check_info(info: MediaInfo) -> None:

@@ -40,7 +40,7 @@ def solving_kernels(
 
 
 def limiting_kernels(device: Device, model: ColorModel, drawn: ColorModel) -> list[Any]:
-    """What else takes colours that are drawn: they are kept within what is near by.
+    """What else takes colours: they are kept within what is near by.
 
     Args:
         device: Where to run.
@@ -50,9 +50,11 @@ def limiting_kernels(device: Device, model: ColorModel, drawn: ColorModel) -> li
     looking = [nearby_kernel(drawn)]
     if drawn.degree > 0:
         looking.append(find_extremes)
-    elif not device.is_cuda:
+    if model.degree == 0 and not device.is_cuda:
         looking += [sift, widen_bands]
-    return looking if drawn is model else [*looking, *_own(device, drawn, "edges", False)]
+    if drawn is model:
+        return looking
+    return [nearby_kernel(model), *looking, *_own(device, drawn, "edges", False)]
 
 
 def _own(device: Device, model: ColorModel, sums: str, weighted: bool) -> list[Any]:

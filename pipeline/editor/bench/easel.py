@@ -1,0 +1,154 @@
+"""Fits colours to meshes and draws them, as the output is drawn."""
+
+from collections import OrderedDict
+from collections.abc import Sequence
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+
+from pipeline.look.wardrobe import Posed, Wardrobe
+from pipeline.loop.convert import triangulator_of
+from pipeline.options.build import fill, values_of
+from pipeline.options.look import Look
+from pipeline.options.solve_options import SolveOptions
+from stages.frame import Frame
+from stages.hand.worked import Worked
+from stages.look.framing import framed
+from stages.motion.advect import Carried
+from stages.snapshot import Snapshot
+from stages.triangulate import Triangulator
+from warp_kernels.color_model import ColorModel
+from warp_kernels.device.device import Device
+
+MOST_ACROSS = 1920
+"""Widest picture that is drawn for the page [px]."""
+MOST_WARDROBES = 6
+"""Kinds of looks whose memory is kept."""
+THUMBNAIL_ACROSS = 128
+"""Widest thumbnail [px]."""
+
+
+class Easel:
+    """Works on frames of one size; used by one thread.
+
+    Args:
+        device: Where kernels run.
+        options: How the clip was solved.
+        size: Width and height of the source [px].
+    """
+
+    def __init__(self, device: Device, options: SolveOptions, size: tuple[int, int]) -> None:
+        self._device, self._options, self._size = device, options, size
+        self._triangulators: dict[str, Triangulator] = {}
+        self._wardrobes: OrderedDict[object, Wardrobe] = OrderedDict()
+
+    def fitted(self, frame: Frame, worked: Worked, model: ColorModel) -> Snapshot:
+        """A mesh as it is, with the colours that fit it.
+
+        Args:
+            frame: The picture.
+            worked: The mesh, and what is held of it.
+            model: The colour model.
+        """
+        snapshot = self._triangulator(model).fit(frame, worked.mesh)
+        return replace(snapshot, locks=worked.locks)
+
+    def solved(self, frame: Frame, worked: Worked, model: ColorModel) -> Snapshot:
+        """A mesh as the optimiser leaves it, just as a run over the whole shot has it.
+
+        Args:
+            frame: The picture.
+            worked: The mesh, and what is held of it.
+            model: The colour model.
+        """
+        return self._triangulator(model).next(frame, Carried.by_hand(worked))
+
+    def ground(self, frame: Frame, model: ColorModel) -> Snapshot:
+        """What a frame becomes that begins a shot, without an edit.
+
+        Args:
+            frame: The picture.
+            model: The colour model.
+        """
+        rng = np.random.default_rng([self._options.seed, frame.index])
+        return self._triangulator(model).first(frame, self._options.layout, rng)
+
+    def drawn(
+        self,
+        snapshot: Snapshot,
+        frame: Frame | None,
+        look: Look,
+        time: float = 0.0,
+        shares: np.ndarray | None = None,
+    ) -> np.ndarray:
+        """A frame as the output shows it, at most `MOST_ACROSS` wide.
+
+        Args:
+            snapshot: The triangles.
+            frame: The picture; None if the look does not show it.
+            look: How they are drawn.
+            time: When it is shown [s].
+            shares: Which followed regions of the look its triangles belong to, [T, R] uint8.
+
+        Returns:
+            Code values, [rows, columns, 3 or 4] uint8.
+        """
+        look = replace(look, scale=min(1.0, MOST_ACROSS / self._size[0]), output_size=None)
+        framing = look.framing_for(self._size, Fraction(1))
+        source = None if frame is None else frame.pixels
+        view = Posed(snapshot, None, source, {}, shares, None, {}, time)
+        pixels = self._wardrobe(framing.picture, look).draw(look, view)
+        return framed(pixels, framing, look.backdrop(self.model))
+
+    def thumbnail(self, snapshot: Snapshot) -> np.ndarray:
+        """A frame in small, in the colours of its triangles.
+
+        Args:
+            snapshot: The triangles.
+
+        Returns:
+            Code values, [rows, columns, 3] uint8.
+        """
+        look = replace(look_of(()), scale=min(1.0, THUMBNAIL_ACROSS / self._size[0]))
+        size = look.framing_for(self._size, Fraction(1)).picture
+        view = Posed(snapshot, None, None, {}, None, None, {}, 0.0)
+        return self._wardrobe(size, look).draw(look, view)
+
+    def _wardrobe(self, size: tuple[int, int], look: Look) -> Wardrobe:
+        """What draws a look; what draws looks with other styles is kept for a while."""
+        kinds = tuple(type(style) for style in (*look.styles, *(r.style for r in look.regions)))
+        key = size, look.followed, kinds
+        if key not in self._wardrobes:
+            made = Wardrobe(self._device, self._size, size, look, self.model)
+            self._wardrobes[key] = made
+        self._wardrobes.move_to_end(key)
+        while len(self._wardrobes) > MOST_WARDROBES:
+            self._wardrobes.popitem(last=False)
+        return self._wardrobes[key]
+
+    @property
+    def model(self) -> ColorModel:
+        """The colour model that is optimised."""
+        return self._options.model
+
+    def _triangulator(self, model: ColorModel) -> Triangulator:
+        """What fits colours of a model."""
+        if model.name not in self._triangulators:
+            self._triangulators[model.name] = triangulator_of(
+                self._options, self._size, self._device, model
+            )
+        return self._triangulators[model.name]
+
+
+def look_of(styles: Sequence[str]) -> Look:
+    """A look of styles as they are written on the command line.
+
+    Args:
+        styles: Bottom to top.
+
+    Raises:
+        OptionError: If there is no such style, or a value is impossible.
+        MediaError: If a picture that it names cannot be read.
+    """
+    return fill(Look, values_of({"styles": list(styles)}))
