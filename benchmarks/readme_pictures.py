@@ -89,6 +89,14 @@ PICTURES: dict[str, Picture] = {
         quality=84,
     ),
     "music_plan": Picture([stills("out/music_plan.png")], 1600, quality=86),
+    "moves": Picture(
+        [
+            stills("out/assembles.png", "out/explodes.png", "out/shatters.png"),
+            stills("out/pulses.png", "out/waves.png", "out/jitters.png"),
+        ],
+        400,
+        quality=86,
+    ),
     "pulse": Picture([of("out/pulse.mp4", 3, 12, 43, 50)], 480),
     "build-up": Picture([of("out/build-up.mp4", 0, 25, 45, 72)], 480),
     "ink-to-colour": Picture([of("out/ink-to-colour.mp4", 10, 28, 45, 65)], 480, quality=86),
