@@ -174,7 +174,7 @@ def test_pictures_are_made_by_commands_of_the_pages() -> None:
         "rabbit",
         "relief",
         "editor",
-    }  # the last two by programs of their own
+    }  # two by own programs
     drawn = {*readme_pictures.PICTURES, *readme_pictures.COPIED}
     assert drawn == {path.stem for path in readme_pictures.IMAGES.iterdir()} - painted
     for picture in readme_pictures.PICTURES.values():
