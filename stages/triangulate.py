@@ -16,8 +16,8 @@ from stages.solve.bench import Bench
 from stages.solve.fitting import Fitting
 from stages.solve.following import Following
 from stages.solve.hold import Hold
-from stages.solve.pace import BOILING, CALM
 from stages.solve.quality import FALL, Trial, smallest_that_reaches
+from stages.solve.rhythm import BOILING, CALM
 from stages.spaces import SPACES
 from stages.topology import TOPOLOGIES
 from stages.topology.appraise import Appraiser
@@ -186,8 +186,8 @@ class Triangulator:
         unrest = None if self._hold.share else unrest
         if unrest is not None:
             seed = unrest.freed(seed)
-        pace = CALM if unrest is None else BOILING
-        rounds, each = pace.spread(0 if self._hold.is_full else self._options.frame_iterations)
+        rhythm = CALM if unrest is None else BOILING
+        rounds, each = rhythm.spread(0 if self._hold.is_full else self._options.frame_iterations)
         following = Following(
             bench=self._in_use,
             options=self._options.optimize,
@@ -207,7 +207,7 @@ class Triangulator:
         if self._hold.is_full and earlier is not None:
             count = earlier.mesh.triangle_count  # a layout has about as many as were asked for
         goal = self._goal(count, calm=True, unrest=unrest)
-        mesh = following.settled(mesh, goal, rounds, pace.watch())
+        mesh = following.settled(mesh, goal, rounds, rhythm.watch())
         return self._solution(frame, self._in_use.approximator.within_limits(mesh, goal), earlier)
 
     def _renew(self, mesh: Mesh, following: Following, unrest: Unrest, rounds: int) -> Mesh:
