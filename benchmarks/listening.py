@@ -119,9 +119,10 @@ def speed(path: Path) -> str:
     code = (
         "import resource, sys, time; from pathlib import Path; "
         "from stages.hearing.listening.listen import listen; begun = time.perf_counter(); "
-        "listen(Path(sys.argv[1])); took = time.perf_counter() - begun; "
+        "busy = time.process_time(); listen(Path(sys.argv[1])); "
+        "busy = time.process_time() - busy; took = time.perf_counter() - begun; "
         "most = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024; "
-        "print(f'four minutes of stereo: {took:.2f} s, {most:.0f} MiB at most')"
+        "print(f'four minutes of stereo: {took:.2f} s, CPU {busy:.2f} s, {most:.0f} MiB at most')"
     )
     made = subprocess.run([sys.executable, "-c", code, str(path)], capture_output=True, text=True)
     return made.stdout + made.stderr

@@ -70,7 +70,7 @@ def seconds(job: Job, track: Path) -> np.ndarray:
         stage = open_stage(device, job, info, framing)
         for row in reader.rows:
             snapshot = reader.snapshot(row.frame)
-            view = Posed(snapshot, None, None, {}, None, None)
+            view = Posed(snapshot, None, None, {}, None, None, {})
             begun = perf_counter()
             shown = Fraction(snapshot.pts) * snapshot.time_base - info.start_time
             looks = stage.looks_at(snapshot.frame_index, shown, 0)
