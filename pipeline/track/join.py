@@ -26,7 +26,7 @@ from warp_kernels.errors import OptionError, TrackError
 
 
 @dataclass(frozen=True)
-class _Part:
+class _Piece:
     """A track that is joined."""
 
     path: Path
@@ -86,12 +86,12 @@ def join(
     return header
 
 
-def _checked(path: Path) -> _Part:
+def _checked(path: Path) -> _Piece:
     """A part that is whole; it is closed again, for there may be more than files can be open."""
     with TrackReader(path) as reader:
         _check_finished(reader)
         reader.check()
-        return _Part(path, reader.header, reader.rows)
+        return _Piece(path, reader.header, reader.rows)
 
 
 def _check_finished(reader: TrackReader) -> None:
@@ -104,7 +104,7 @@ def _check_finished(reader: TrackReader) -> None:
         )
 
 
-def _check_alike(first: _Part, other: _Part) -> None:
+def _check_alike(first: _Piece, other: _Piece) -> None:
     mine, theirs = first.header, other.header
     if (mine.source.size, mine.source.digest) != (theirs.source.size, theirs.source.digest):
         raise TrackError(
@@ -122,7 +122,7 @@ def _check_alike(first: _Part, other: _Part) -> None:
         )
 
 
-def _joint(before: _Part, after: _Part, blend: int) -> Joint | None:
+def _joint(before: _Piece, after: _Piece, blend: int) -> Joint | None:
     """How a part goes on where another one ends; None if it begins with the frame after that."""
     last, first, step = before.last, after.first, before.header.frame_range.step
     common = (last - first) // step + 1
@@ -153,7 +153,7 @@ def _joint(before: _Part, after: _Part, blend: int) -> Joint | None:
     return Joint(last - blend + 1, before.path, blend)
 
 
-def _whole_range(parts: Sequence[_Part]) -> FrameRange:
+def _whole_range(parts: Sequence[_Piece]) -> FrameRange:
     """From the first part's beginning to the last one's end."""
     first, last = (parts[place].header.frame_range for place in (0, -1))
     joined = replace(first, last=last.last, end_time=last.end_time)
@@ -162,7 +162,7 @@ def _whole_range(parts: Sequence[_Part]) -> FrameRange:
     return FrameRange() if is_whole and parts[-1].last + 1 == count else joined
 
 
-def _copy(connection: sqlite3.Connection, part: _Part, begin: int, end: int | None) -> None:
+def _copy(connection: sqlite3.Connection, part: _Piece, begin: int, end: int | None) -> None:
     """Copy the frames of a part from one on, up to another one that is not copied."""
     connection.execute("ATTACH ? AS part", (f"{part.path.absolute().as_uri()}?mode=ro",))
     connection.execute("BEGIN")

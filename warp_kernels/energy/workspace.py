@@ -12,6 +12,7 @@ import warp as wp
 from warp_kernels.color_model import ColorModel
 from warp_kernels.device.device import Device, Phase
 from warp_kernels.energy.fit import record_fit
+from warp_kernels.energy.freedom import Freedom
 from warp_kernels.energy.gradient_descent import record_descent
 from warp_kernels.energy.variant_energies import record_energies
 from warp_kernels.moments.edge_moments import record_edge_moments
@@ -25,8 +26,6 @@ from warp_kernels.raster import SUBPIXELS
 
 FAR = 1e6
 """First trust region of a vertex [px]: the common one rules until steps turn round."""
-
-
 DISPLACEMENT = 1.0
 """Distance between a triangle and its variants [px]: Delta of Eq. 11."""
 
@@ -147,19 +146,20 @@ class Workspace:
             (self.sides, sides),
             (self._fan_offsets, fan_offsets),
             (self._fan_corners, fan_corners),
-            (self._freedom, freedom),
         ):
             self.device.write(array, values)
-        self.device.write(self._moved, np.ones(len(vertices), dtype=np.int32))
+        self._freedom.load(freedom)
         self._resize()
 
-    def hold(self, anchors: np.ndarray) -> None:
+    def hold(self, anchors: np.ndarray, marks: np.ndarray | None = None) -> None:
         """Fix the temporal term, and forget the steps that vertices took before.
 
         Args:
             anchors: Position [px] and weight [code value^2] of every vertex, [V, 3].
+            marks: Which vertices rest, see `Freedom.rest`; None for none.
         """
         self._held = True
+        self._freedom.rest(marks)
         self.device.write(self._anchors, anchors)
         self.device.write(self._memory, np.tile((FAR, FAR, 0.0, 0.0), (self._counts[0], 1)))
 
@@ -210,11 +210,12 @@ class Workspace:
     def energies(self) -> np.ndarray:
         """E of all thirteen variants of every triangle as it stands, 1 px apart, [T, 13]."""
         self._displace(DISPLACEMENT)
+        self._freedom.know_all()
         self.device.run([self._moments[self._front], self._energy])
         return self.device.read(self._energies, self._counts[1])
 
     def last_energy(self) -> float:
-        """Energy of the mesh before the last step of `iterate` [code value^2 px]."""
+        """Energy of the mesh before the last step of `iterate` [code value^2 px], if none rests."""
         return float(self.device.read(self._energies, self._counts[1])[:, 0].sum())
 
     def moments(self) -> tuple[np.ndarray, np.ndarray]:
@@ -223,6 +224,7 @@ class Workspace:
         int64; in the wide layout the highest powers modulo 2^64.
         """
         self._displace(DISPLACEMENT)
+        self._freedom.know_all()
         self.device.run([self._moments[self._front]])
         count = self._counts[2 if self.sums == "edges" else 1]
         color, area = (self.device.read(s, count) for s in (self._color_sums, self._area_sums))
@@ -247,7 +249,7 @@ class Workspace:
         if displacement != self._displacement:
             self._displacement = displacement
             self.device.write(self._probe, np.array([round(displacement * SUBPIXELS)], np.int32))
-            self.device.write(self._moved, np.ones(self._counts[0], dtype=np.int32))
+            self._freedom.know_nothing()
 
     def _grow(self) -> None:
         had, needed = np.array(self.capacity), np.array(self._counts[:2])
@@ -267,10 +269,9 @@ class Workspace:
         self.sides = self._empty(triangles, wp.vec3i)
         self._fan_offsets = self._empty(vertices + 1, wp.int32)
         self._fan_corners = self._empty(3 * triangles, wp.int32)
-        self._freedom = self._empty(vertices, wp.vec2d)
+        self._freedom = Freedom(self.device, vertices)
         self._anchors = self._empty(vertices, wp.vec3d)
         self._memory = self._empty(vertices, wp.vec4d)
-        self._moved = self._empty(vertices, wp.int32)
         if self.sums == "fragments":
             self._color_sums = self._empty((triangles, TRIANGLE_VARIANTS), types.color)
             self._area_sums = self._empty((triangles, TRIANGLE_VARIANTS), types.area)
@@ -299,7 +300,7 @@ class Workspace:
             self.layout,
             self.sums,
             triangles=self.triangles,
-            moved=self._moved,
+            moved=self._freedom.marks,
             sides=self.sides,
             color_sums=self._color_sums,
             area_sums=self._area_sums,
@@ -314,13 +315,13 @@ class Workspace:
                 energies=self._energies,
                 fan_offsets=self._fan_offsets,
                 fan_corners=self._fan_corners,
-                freedom=self._freedom,
+                freedom=self._freedom.axes,
                 anchors=self._anchors,
                 probe=self._probe,
                 controls=self._controls,
                 memory_out=self._memory,
                 vertices_out=self._vertices[1 - front],
-                moved_out=self._moved,
+                moved_out=self._freedom.marks,
             )
             for front in (0, 1)
         ]
@@ -333,7 +334,7 @@ class Workspace:
                 self.layout,
                 vertices=front,
                 edges=self._edges,
-                moved=self._moved,
+                moved=self._freedom.marks,
                 probe=self._probe,
                 table=self.table,
                 size=self.size,
@@ -374,7 +375,7 @@ class Workspace:
             self.layout,
             vertices=vertices,
             edges=self._edges,
-            moved=self._moved,
+            moved=self._freedom.marks,
             probe=self._probe,
             table=self.table,
             size=self.size,
