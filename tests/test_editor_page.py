@@ -386,7 +386,6 @@ def test_time_and_the_way_through_a_shot(browser: Browser, clip_server: Served) 
         shown[view] = page.evaluate("() => trimotion.mesh.held.reduce((sum, one) => sum + one, 0)")
     assert shown == {"before": 0, "solved": 1}
     page.keyboard.press(" ")
-    page.wait_for_function("() => trimotion.player.shown > 1")
     page.wait_for_function("() => !trimotion.isPlaying && trimotion.frame === 11")
     page.locator("#render").click()
     expect(page.locator("#toast")).to_contain_text("Rendering clip")

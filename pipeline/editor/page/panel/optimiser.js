@@ -27,6 +27,7 @@ export class OptimiserPanel {
     this.plot = document.createElement("canvas");
     this.plot.id = "curve";
     this.plot.setAttribute("role", "img");
+    this.plot.setAttribute("aria-label", "Error over steps");
     this.told = help("");
     this.told.id = "optimiser-told";
     this.sliders = document.createElement("div");
