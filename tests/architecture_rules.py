@@ -51,7 +51,9 @@ ALLOCATORS = frozenset(
 TYPE_KEYWORDS = frozenset({"dtype", "ndim"})
 """`wp.array` with these alone is a type, not memory."""
 
-WARP_HOMES = frozenset({"warp_kernels/device/device.py", "warp_kernels/device/runtime.py"})
+WARP_HOMES = frozenset(
+    f"warp_kernels/device/{name}.py" for name in ("device", "launcher", "runtime", "team")
+)
 """The only files that call Warp while the program runs."""
 WARP_CALLS = ALLOCATORS | {
     *("launch", "launch_tiled", "copy", "init", "synchronize", "synchronize_device"),

@@ -17,8 +17,10 @@ import warp as wp
 from stages.optimize import load_mesh, place_mesh
 from tests.kernel_samples import noise, poisoned_workspace, random_mesh, waves
 from warp_kernels.color_model import COLOR_MODELS, CONSTANT, LINEAR, ColorModel
-from warp_kernels.device.device import PART, Device, Phase
+from warp_kernels.device.device import Device
+from warp_kernels.device.phase import Phase
 from warp_kernels.device.runtime import driver_problem
+from warp_kernels.device.team import PART
 from warp_kernels.energy.workspace import Workspace
 
 WIDTH, HEIGHT = 61, 47

@@ -6,7 +6,8 @@ from typing import Any
 import numpy as np
 import warp as wp
 
-from warp_kernels.device.device import Device, Phase
+from warp_kernels.device.device import Device
+from warp_kernels.device.phase import Phase
 from warp_kernels.drawing.coats import coats_of
 from warp_kernels.drawing.gbuffer import LEAST_ROWS, fill_triangles, record_gbuffer
 from warp_kernels.drawing.layers import Layers, LayerTables

@@ -8,8 +8,9 @@ doubled border can show, and no order of threads matters.
 
 import warp as wp
 
-from warp_kernels.device.device import Device, Phase
+from warp_kernels.device.device import Device
 from warp_kernels.device.exact import EXACT
+from warp_kernels.device.phase import Phase
 from warp_kernels.raster import SUBPIXELS, column_of, to_fixed, walk_edge
 
 wp.set_module_options(EXACT)

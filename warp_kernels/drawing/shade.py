@@ -15,8 +15,9 @@ from typing import Any
 
 import warp as wp
 
-from warp_kernels.device.device import Device, Phase
+from warp_kernels.device.device import Device
 from warp_kernels.device.exact import EXACT
+from warp_kernels.device.phase import Phase
 from warp_kernels.drawing.blend import Coat, stack_of
 from warp_kernels.drawing.cross_fade import see_through
 from warp_kernels.drawing.gbuffer import LEAST_ROWS

@@ -3,7 +3,7 @@
 import numpy as np
 import warp as wp
 
-from warp_kernels.device.device import Phase
+from warp_kernels.device.phase import Phase
 from warp_kernels.energy.topology_gains import record_changes
 from warp_kernels.energy.topology_inputs import ground_type
 from warp_kernels.energy.workspace import Workspace

@@ -10,7 +10,8 @@ import numpy as np
 import warp as wp
 
 from warp_kernels.color_model import ColorModel
-from warp_kernels.device.device import Device, Phase
+from warp_kernels.device.device import Device
+from warp_kernels.device.phase import Phase
 from warp_kernels.energy.fit import record_fit
 from warp_kernels.energy.gradient_descent import record_descent
 from warp_kernels.energy.variant_energies import record_energies
