@@ -11,6 +11,7 @@ in device memory: a graph outlives changes of the mesh as long as no part outgro
 
 import os
 import weakref
+from collections import Counter
 from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any
@@ -24,6 +25,7 @@ from warp_kernels.device.kernels import Told, tell_nobody
 from warp_kernels.device.launcher import Launcher, WarpLauncher
 from warp_kernels.device.phase import SMALLEST_PART, Phase
 from warp_kernels.device.runtime import EMULATED, WARP, find_device, unused_card
+from warp_kernels.device.staging import LAUNCHES, Rows, Staging
 from warp_kernels.device.team import Team
 
 
@@ -55,8 +57,16 @@ class Device:
         self._launcher = _emulated(self.warp) if emulated else WarpLauncher(self.warp, tell)
         if self.part_count > 1:
             self._launcher.expect([meet])
+        self.traffic: Counter[str] = Counter()
+        """Copies, launches and waits so far, on a card."""
+        self._staging = self._new_staging() if self.is_cuda else None
         self._is_closed = False
         self._team = self._new_team()
+
+    def _new_staging(self) -> Staging:
+        """The way to and from a card."""
+        with WARP:
+            return Staging(self.warp, self._launcher, self.traffic)
 
     def _new_team(self) -> Team:
         """Threads that end when nobody refers to the device any more."""
@@ -95,8 +105,8 @@ class Device:
     def _span_writer(self, spans: Sequence[wp.array]) -> Callable[[int, int, int], None]:
         """A function that writes a part's range; on the CPU straight into its memory."""
         # no reference to the device: the team's graphs keep phases, and would keep it for ever
-        if self.is_cuda:
-            return partial(_write_span, spans)
+        if self._staging is not None:
+            return partial(_write_span, self._staging, spans)
         views = [_seen_by_host(span)[0] for span in spans]
 
         def write(number: int, begin: int, end: int) -> None:
@@ -120,6 +130,9 @@ class Device:
         with WARP:
             if self._is_closed:
                 raise RuntimeError(f"{self!r} was closed; make another one")
+            if self._staging is not None:
+                self._staging.flush()
+                self.traffic[LAUNCHES] += times * len(phases)
             try:
                 self._team.run(phases, times)
             except BaseException:
@@ -136,31 +149,39 @@ class Device:
     def clear(self, array: wp.array) -> None:
         """Fill a device array with zeros."""
         with WARP:
+            if self._staging is not None:
+                self._staging.flush()
             array.zero_()
 
     def write(self, array: wp.array, values: np.ndarray) -> None:
         """Copy host values into the beginning of a device array."""
-        if self.is_cuda:
-            with WARP:
-                source: wp.array = wp.array(values, dtype=array.dtype, device="cpu")
-                wp.copy(array, source, count=source.size)
-                self.synchronize()  # the host values may be gone before the copy is done
-        else:
+        if self._staging is None:
             _seen_by_host(array)[: len(values)] = values
+            return
+        with WARP:
+            self._staging.write(array, values)
 
     def read(self, array: wp.array, count: int) -> np.ndarray:
         """Copy the first `count` rows of a device array to the host."""
-        if self.is_cuda:
-            with WARP:
-                self.synchronize()
-                return np.array(array.numpy()[:count])
-        return _seen_by_host(array)[:count].copy()
+        return self.read_all([Rows(array, count)])[0]
+
+    def read_all(self, wanted: Sequence[Rows]) -> list[np.ndarray]:
+        """Copy the beginnings of several arrays to the host, which costs a card no more than one.
+
+        Args:
+            wanted: What to read; of several arrays, such as consist of words of 4 bytes.
+        """
+        if self._staging is None:
+            return [_rows_seen(rows).copy() for rows in wanted]
+        with WARP:
+            return self._staging.read(wanted)
 
     def synchronize(self) -> None:
         """Wait until everything launched so far is done."""
-        if self.is_cuda:
+        if self._staging is not None:
             with WARP:
-                wp.synchronize_device(self.warp)
+                self._staging.flush()
+                self._staging.wait()
 
     def close(self) -> None:
         """End the threads, and wait for them; what runs is finished first."""
@@ -186,10 +207,18 @@ def _emulated(device: Any) -> Launcher:
     return EmulatedLauncher(device)
 
 
-def _write_span(spans: Sequence[wp.array], number: int, begin: int, end: int) -> None:
+def _write_span(
+    staging: Staging, spans: Sequence[wp.array], number: int, begin: int, end: int
+) -> None:
     """Write the range of one part into memory that the host does not see."""
     with WARP:
-        spans[number].assign([[begin, end]])
+        staging.write(spans[number], np.array([[begin, end]]))
+
+
+def _rows_seen(rows: Rows) -> np.ndarray:
+    """Rows of an array on the CPU as they lie there."""
+    seen = _seen_by_host(rows.array)[: rows.count]
+    return seen if rows.column is None else seen[:, rows.column]
 
 
 def _seen_by_host(array: wp.array) -> np.ndarray:

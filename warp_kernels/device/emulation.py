@@ -129,13 +129,20 @@ class EmulatedLaunch:
     ) -> None:
         self._launcher = launcher
         self._kernel = kernel
-        self._kept = arguments
+        self._kept, self._device = arguments, device
         self._function = _library_of(kernel.module)[f"launch_{kernel.get_mangled_name()}"]
         self._packed = [
             pack_arg(kernel, declared.type, declared.label, value, device)
             for declared, value in zip(kernel.adj.args, arguments, strict=True)
         ]
         self.set_dim(1)
+
+    def set_param_at_index(self, index: int, value: Any) -> None:
+        """Give another value for one argument."""
+        declared = self._kernel.adj.args[index]
+        self._packed[index] = pack_arg(
+            self._kernel, declared.type, declared.label, value, self._device
+        )
 
     def set_dim(self, size: int) -> None:
         """Set the number of threads."""

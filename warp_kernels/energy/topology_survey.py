@@ -4,6 +4,7 @@ import numpy as np
 import warp as wp
 
 from warp_kernels.device.phase import Phase
+from warp_kernels.device.staging import Rows
 from warp_kernels.energy.topology_gains import record_changes
 from warp_kernels.energy.topology_inputs import ground_type
 from warp_kernels.energy.workspace import Workspace
@@ -50,11 +51,13 @@ class Survey:
 
     def flip_gains(self, half_edges: np.ndarray) -> np.ndarray:
         """Energy that each flip saves [code value^2 px], [N]; hugely negative if impossible."""
-        return self._measure("flip", half_edges)
+        (gains,) = self._measure("flip", half_edges)
+        return gains
 
     def collapse_costs(self, half_edges: np.ndarray) -> np.ndarray:
         """Energy that each collapse of an origin adds [code value^2 px], [N]; huge if barred."""
-        return self._measure("collapse", half_edges)
+        (costs,) = self._measure("collapse", half_edges)
+        return costs
 
     def split_gains(self, half_edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The best split of each edge.
@@ -62,10 +65,11 @@ class Survey:
         Returns:
             Energy that it saves [code value^2 px], [N], and its place [px], [N, 2].
         """
-        gains = self._measure("split", half_edges)
-        return gains, self._workspace.device.read(self._points, len(half_edges))
+        gains, points = self._measure("split", half_edges)
+        return gains, points
 
-    def _measure(self, change: str, half_edges: np.ndarray) -> np.ndarray:
+    def _measure(self, change: str, half_edges: np.ndarray) -> list[np.ndarray]:
+        """Look at half-edges, and read what was found of each."""
         device = self._workspace.device
         key = (change, self._workspace.generation, self._workspace.standing.ptr)
         if key not in self._phases:
@@ -74,7 +78,7 @@ class Survey:
         phase.resize(len(half_edges))
         device.write(self._half_edges, half_edges)
         device.run([phase])
-        return device.read(self._changes, len(half_edges))
+        return device.read_all([Rows(found, len(half_edges)) for found in self._found(change)])
 
     def _record(self, change: str) -> Phase:
         workspace = self._workspace
@@ -91,5 +95,9 @@ class Survey:
         ground.gauge = workspace.gauge
         ground.limits = self._limits
         ground.width, ground.height = workspace.size
-        outputs = [self._changes, self._points] if change == "split" else [self._changes]
-        return record_changes(workspace.device, workspace.layout, change, ground, outputs)
+        found = self._found(change)
+        return record_changes(workspace.device, workspace.layout, change, ground, found)
+
+    def _found(self, change: str) -> list[wp.array]:
+        """What is found of a change: for splits their places as well."""
+        return [self._changes, self._points] if change == "split" else [self._changes]

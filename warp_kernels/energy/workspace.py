@@ -12,6 +12,7 @@ import warp as wp
 from warp_kernels.color_model import ColorModel
 from warp_kernels.device.device import Device
 from warp_kernels.device.phase import Phase
+from warp_kernels.device.staging import Rows
 from warp_kernels.energy.fit import record_fit
 from warp_kernels.energy.gradient_descent import record_descent
 from warp_kernels.energy.variant_energies import record_energies
@@ -216,7 +217,8 @@ class Workspace:
 
     def last_energy(self) -> float:
         """Energy of the mesh before the last step of `iterate` [code value^2 px]."""
-        return float(self.device.read(self._energies, self._counts[1])[:, 0].sum())
+        (energies,) = self.device.read_all([Rows(self._energies, self._counts[1], column=0)])
+        return float(energies.sum())
 
     def moments(self) -> tuple[np.ndarray, np.ndarray]:
         """Colour and area sums as they stand: [E, ., 9] with edges, [T, 13, .] with fragments.
@@ -226,7 +228,8 @@ class Workspace:
         self._displace(DISPLACEMENT)
         self.device.run([self._moments[self._front]])
         count = self._counts[2 if self.sums == "edges" else 1]
-        color, area = (self.device.read(s, count) for s in (self._color_sums, self._area_sums))
+        sums = [Rows(array, count) for array in (self._color_sums, self._area_sums)]
+        color, area = self.device.read_all(sums)
         return color.view(np.int64), area.view(np.int64)
 
     def fit(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -240,7 +243,8 @@ class Workspace:
             self.device.run([self._fit_sums[self._front], self._fit])
             self._fitted = True
         fitted = (self._coefficients, self.fit_energies, self._fit_counts)
-        coefficients, energies, counts = (self.device.read(a, self._counts[1]) for a in fitted)
+        rows = [Rows(array, self._counts[1]) for array in fitted]
+        coefficients, energies, counts = self.device.read_all(rows)
         return coefficients, energies, counts
 
     def _displace(self, displacement: float) -> None:
