@@ -1,5 +1,5 @@
 # make demo    convert a sample clip and put source and result side by side
-# make test    run every test          make lint    ruff and mypy
+# make test    run every test          make lint    ruff, mypy, and tsc for the editor's page
 # make clean   remove what these made
 #
 # Needs only Python 3.11 or newer and make; everything is installed into .venv.
@@ -12,6 +12,7 @@ BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --quiet --disable-pip-version-check
 DEMO_VIDEO := demo/$(basename $(notdir $(DEMO_CLIP))).mp4
 DEMO_SHEET := $(basename $(DEMO_VIDEO))_sheet.png
+TSC := $(VENV)/typescript/node_modules/typescript/bin/tsc
 SOURCES := $(shell find warp_kernels stages pipeline -name '*.py' -o -name '*.toml')
 
 .PHONY: demo test lint clean
@@ -24,11 +25,12 @@ demo: $(DEMO_SHEET)
 test: $(VENV)/.installed-dev
 	@$(BIN)/python -m pytest --numprocesses=logical --maxprocesses=4 --dist=worksteal
 
-lint: $(VENV)/.installed-dev
+lint: $(VENV)/.installed-dev $(TSC)
 	@$(BIN)/ruff check .
 	@$(BIN)/ruff format --check .
 	@$(BIN)/mypy
 	@$(BIN)/mypy --strict --follow-imports=silent tests/client_of_trimotion.py
+	@$(BIN)/node $(TSC) --project pipeline/editor/page/jsconfig.json
 
 clean:
 	@rm -rf $(VENV) demo out build *.egg-info .pytest_cache .ruff_cache .mypy_cache .hypothesis
@@ -50,6 +52,12 @@ $(VENV)/.installed: pyproject.toml $(VENV)/.created
 $(VENV)/.installed-dev: pyproject.toml $(VENV)/.installed
 	@echo "installing the tools for tests into $(VENV)"
 	@$(PIP) install --editable '.[dev]'
+	@touch $@
+
+# The types of the editor's page are checked by TypeScript, which PyPI does not have; Node it has.
+$(TSC): $(VENV)/.installed-dev
+	@echo "installing TypeScript into $(VENV)"
+	@$(BIN)/npm install --silent --no-audit --no-fund --prefix $(VENV)/typescript typescript@5.9
 	@touch $@
 
 $(VENV)/.created:

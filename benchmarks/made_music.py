@@ -66,7 +66,7 @@ def play(piece: Piece, seed: int = 0) -> Played:
         _play_band(sound, piece, beats, rng)
     else:
         for number, time in enumerate(beats):
-            _add(sound, time, 0.8 * _click(1500.0 if number % piece.meter == 0 else 1000.0))
+            add(sound, time, 0.8 * _click(1500.0 if number % piece.meter == 0 else 1000.0))
     if piece.noise:
         played = sound[round(piece.silence * RATE) :]
         level = float(np.sqrt((played.astype(float) ** 2).mean()))
@@ -88,22 +88,22 @@ def _beats_of(piece: Piece) -> np.ndarray:
 def _play_band(
     sound: np.ndarray, piece: Piece, beats: np.ndarray, rng: np.random.Generator
 ) -> None:
-    kick, snare = _kick(), _snare(rng)
+    low, high = kick(), snare(rng)
     for number, (time, after) in enumerate(pairwise(beats)):
         place, bar = number % piece.meter, number // piece.meter
         length = after - time
         root, kind = BARS[bar % len(BARS)]
         half = time + piece.swing * length
         strikes = place in (0, 2) if piece.meter == 4 else place == 0
-        _add(sound, _sway(time, rng), (0.8 * kick) if strikes else (0.55 * snare))
+        add(sound, _sway(time, rng), (0.8 * low) if strikes else (0.55 * high))
         if piece.meter == 4 and place == 2 and bar % 2:
-            _add(sound, _sway(half, rng), 0.6 * kick)
+            add(sound, _sway(half, rng), 0.6 * low)
         for at, loud in ((time, 0.22), (half, 0.14)):
-            _add(sound, _sway(at, rng), loud * rng.uniform(0.8, 1.1) * _hat(rng))
+            add(sound, _sway(at, rng), loud * rng.uniform(0.8, 1.1) * hat(rng))
         note = root + piece.key + (7 if place == piece.meter - 1 else 0)
-        _add(sound, _sway(time, rng), 0.35 * _bass(note, length * 0.9))
+        add(sound, _sway(time, rng), 0.35 * bass(note, length * 0.9))
         if place == 0:
-            _add(sound, time, 0.12 * _pad(root + piece.key, kind, length * piece.meter))
+            add(sound, time, 0.12 * pad(root + piece.key, kind, length * piece.meter))
 
 
 def _sway(time: float, rng: np.random.Generator) -> float:
@@ -111,46 +111,53 @@ def _sway(time: float, rng: np.random.Generator) -> float:
     return float(max(0.0, time + rng.normal(0, 0.004)))
 
 
-def _add(sound: np.ndarray, time: float, part: np.ndarray) -> None:
+def add(sound: np.ndarray, time: float, part: np.ndarray) -> None:
+    """Add a part [N] to a sound [M] from a time [s] on; what does not fit is left out."""
     start = round(time * RATE)
     room = sound[start : start + len(part)]
     room += part[: len(room)].astype(np.float32)
 
 
-def _times(seconds: float) -> np.ndarray:
+def seconds_of(seconds: float) -> np.ndarray:
+    """Times of the samples of a sound of so many seconds [s]."""
     return np.arange(round(seconds * RATE)) / RATE
 
 
 def _click(pitch: float) -> np.ndarray:
-    t = _times(0.03)
+    t = seconds_of(0.03)
     return np.sin(2 * np.pi * pitch * t) * np.exp(-t / 0.008)
 
 
-def _kick() -> np.ndarray:
-    t = _times(0.25)
+def kick() -> np.ndarray:
+    """A bass drum."""
+    t = seconds_of(0.25)
     return np.sin(2 * np.pi * (50 * t + 4 * (1 - np.exp(-t / 0.03)))) * np.exp(-t / 0.08)
 
 
-def _snare(rng: np.random.Generator) -> np.ndarray:
-    t = _times(0.2)
+def snare(rng: np.random.Generator) -> np.ndarray:
+    """A snare drum."""
+    t = seconds_of(0.2)
     rattle = rng.standard_normal(len(t)) * np.exp(-t / 0.06)
     return 0.5 * rattle + 0.5 * np.sin(2 * np.pi * 190 * t) * np.exp(-t / 0.05)
 
 
-def _hat(rng: np.random.Generator) -> np.ndarray:
-    t = _times(0.06)
+def hat(rng: np.random.Generator) -> np.ndarray:
+    """A closed hi-hat."""
+    t = seconds_of(0.06)
     return np.diff(rng.standard_normal(len(t)), prepend=0.0) * np.exp(-t / 0.015)
 
 
-def _bass(note: float, seconds: float) -> np.ndarray:
-    t = _times(seconds)
+def bass(note: float, seconds: float) -> np.ndarray:
+    """A bass, so many semitones above A."""
+    t = seconds_of(seconds)
     pitch = 55.0 * 2 ** (note / 12)
     tone = sum(np.sin(2 * np.pi * n * pitch * t) / n**1.5 for n in range(1, 6))
     return np.asarray(tone * np.minimum(1, t / 0.008) * np.exp(-t / 0.5))
 
 
-def _pad(root: float, kind: str, seconds: float) -> np.ndarray:
-    t = _times(seconds)
+def pad(root: float, kind: str, seconds: float) -> np.ndarray:
+    """A held chord, so many semitones above A and of a kind of `THIRDS`."""
+    t = seconds_of(seconds)
     tones = [220.0 * 2 ** ((root + step) / 12) for step in THIRDS[kind]]
     chord = sum(np.sin(2 * np.pi * f * t) + 0.4 * np.sin(4 * np.pi * f * t) for f in tones)
     return np.asarray(chord * np.minimum(1, np.minimum(t / 0.08, (seconds - t) / 0.08)))

@@ -152,9 +152,9 @@ MUTANTS = (
     ),
     Mutant(
         "commands to the terminal",
-        "pipeline/commands/info.py",
-        'letter if letter.isprintable() else "?"',
-        "letter",
+        "pipeline/printable.py",
+        'one if one.isprintable() or one == "\\n" else _spelled(one)',
+        "one",
         "tests/test_track.py -k terminal",
     ),
     Mutant(

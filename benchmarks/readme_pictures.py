@@ -83,6 +83,12 @@ PICTURES: dict[str, Picture] = {
     "circles": Picture([stills("out/circles.png")], 760),
     "glass": Picture([of("out/glass.mp4", 57)], 1120, quality=86),
     "lights": Picture([of("out/lights.mp4", 0)], 1120),
+    "music_video": Picture(
+        [of("out/music_video.mp4", 12, 36, 54, 96), of("out/music_video.mp4", 133, 151, 171, 181)],
+        480,
+        quality=84,
+    ),
+    "music_plan": Picture([stills("out/music_plan.png")], 1600, quality=86),
     "pulse": Picture([of("out/pulse.mp4", 3, 12, 43, 50)], 480),
     "build-up": Picture([of("out/build-up.mp4", 0, 25, 45, 72)], 480),
     "ink-to-colour": Picture([of("out/ink-to-colour.mp4", 10, 28, 45, 65)], 480, quality=86),

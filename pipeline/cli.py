@@ -18,6 +18,7 @@ from typing import Any, NoReturn
 from pipeline.commands.crash_watch import watch_for_crashes
 from pipeline.commands.grammar import build_parser
 from pipeline.commands.inputs import inputs_of, joined, take
+from pipeline.printable import one_line, printable
 
 INTERRUPTED = 130
 TERMINATED = 143
@@ -98,6 +99,17 @@ def run_conversion(arguments: argparse.Namespace) -> int:
     return convert_all(arguments, _report)
 
 
+def run_edit(arguments: argparse.Namespace) -> None:
+    """Serve the editor.
+
+    Args:
+        arguments: What the user gave; options that were left out are absent.
+    """
+    from pipeline.commands.editing.edit import edit
+
+    edit(arguments)
+
+
 def run_preview(arguments: argparse.Namespace) -> None:
     """Draw a few moments.
 
@@ -106,21 +118,18 @@ def run_preview(arguments: argparse.Namespace) -> None:
     """
     from pipeline.commands.convert import preview_of
 
-    print(preview_of(arguments))
+    print(printable(preview_of(arguments)))
 
 
 def run_plan(arguments: argparse.Namespace) -> None:
-    """Print ranges of whole shots.
+    """Print ranges of whole shots, or the job of a farm.
 
     Args:
         arguments: What the user gave; options that were left out are absent.
     """
-    from pipeline.loop.plan import plan
-    from pipeline.options.build import fill, values_of
-    from pipeline.options.solve_options import SolveOptions
+    from pipeline.commands.farm.plan import planned
 
-    found = plan(fill(SolveOptions, values_of(vars(arguments))), arguments.parts)
-    print(found.as_json() if arguments.json else found.as_lines())
+    print(planned(arguments))
 
 
 def run_join(arguments: argparse.Namespace) -> None:
@@ -129,7 +138,7 @@ def run_join(arguments: argparse.Namespace) -> None:
     Args:
         arguments: What the user gave.
     """
-    from pipeline.commands.join import join_tracks
+    from pipeline.commands.farm.join import join_tracks
     from pipeline.progress import tell
 
     parts = [Path(name) for name in arguments.tracks]
@@ -195,7 +204,7 @@ def run_timeline(arguments: argparse.Namespace) -> None:
     """
     from pipeline.commands.timeline_check import check_timeline
 
-    print(check_timeline(arguments))
+    print(printable(check_timeline(arguments)))
 
 
 def run_listen(arguments: argparse.Namespace) -> None:
@@ -208,7 +217,7 @@ def run_listen(arguments: argparse.Namespace) -> None:
 
     told = listen_to(arguments)
     if told:
-        print(told)
+        print(printable(told))
 
 
 def run_completion(arguments: argparse.Namespace) -> None:
@@ -255,6 +264,7 @@ COMMANDS: dict[str, Command] = {
     "animate": run_conversion,
     "solve": run_conversion,
     "render": run_conversion,
+    "edit": run_edit,
     "preview": run_preview,
     "plan": run_plan,
     "join": run_join,
@@ -318,7 +328,7 @@ def _left_over(arguments: argparse.Namespace) -> str:
 def _fail(text: str, code: int) -> int:
     from pipeline.progress import tell
 
-    tell("trimotion: error: " + " ".join(text.split()), sys.stderr)
+    tell(f"trimotion: error: {one_line(text)}", sys.stderr)
     return code
 
 

@@ -12,6 +12,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TextIO
 
+from pipeline.printable import printable
+
 PLAIN_INTERVAL = 2.0
 """Time between the first plain lines [s]."""
 PLAIN_SHARE = 0.05
@@ -159,7 +161,7 @@ def tell(line: str, stream: TextIO) -> None:
         stream: Standard output or standard error.
     """
     try:
-        print(line, file=stream, flush=True)
+        print(printable(line), file=stream, flush=True)
     except OSError:
         hush(stream)
 
@@ -298,7 +300,7 @@ class BarProgress(Progress):
         if self._bar is None:
             super()._print(line)
         else:
-            self._bar.write(line, file=sys.stderr)
+            self._bar.write(printable(line), file=sys.stderr)
 
 
 class JsonProgress(Progress):

@@ -17,8 +17,8 @@ from stages.solve.approximate import Approximator
 from stages.solve.bench import Bench
 from stages.solve.color_limits import Limiter
 from stages.solve.color_owners import color_owners
-from stages.solve.convergence import Convergence
 from stages.solve.hold import Hold
+from stages.solve.pace import BOILING, CALM
 from stages.solve.quality import FALL, Trial, smallest_that_reaches
 from stages.solve.steady_colors import steadied
 from stages.spaces import SPACES
@@ -40,11 +40,6 @@ FRAME_DISPLACEMENT = 0.75
 one those that fit the picture better."""
 DEAD_BAND = 0.1
 """Steps of later frames below this are not taken [px]: noise must not move what stands still."""
-FRAME_ROUND = 3
-"""Iterations of later frames between two looks at the topology."""
-FRAME_SAVING = 0.0025
-"""Once a round saves less than this part of the energy, a later frame is done: where little has
-changed one or two rounds are enough, where something moves fast all of them are worth it."""
 RENEWED = 0.8
 """Where a later frame boils it is refined anew over this share of its rounds."""
 CALM_QUALITY = 0.02
@@ -186,12 +181,11 @@ class Triangulator:
         """
         self._lock(seed.locks)
         self._load(frame)
-        iterations = 0 if self._hold.is_full else self._options.frame_iterations
-        rounds = max(1, iterations // FRAME_ROUND - 1)
-        each = iterations // (rounds + 1)
-        convergence = Convergence(FRAME_SAVING, patience=1)
         spring = SPRING * self._rmse(seed.mesh) ** 2
         unrest = None if self._hold.share else self._unrest(seed, earlier)
+        pace = CALM if unrest is None else BOILING
+        rounds, each = pace.spread(0 if self._hold.is_full else self._options.frame_iterations)
+        convergence = pace.watch()
         if unrest is not None:
             seed = unrest.freed(seed)
         mesh = self._follow(seed.mesh, seed, spring, each, frame.weights)

@@ -31,15 +31,22 @@ IMPORT_HOMES = {
         "stages/spaces",
     ),
     "av": ("stages/media",),
+    "ezdxf": ("stages/exchange/dxf",),
+    "pxr": ("stages/exchange/usd",),
     "argparse": ("pipeline/",),
     "sqlite3": ("pipeline/",),
     "tomllib": ("pipeline/",),
     "tqdm": ("pipeline/",),
+    "starlette": ("pipeline/editor/serving/",),
+    "uvicorn": ("pipeline/editor/serving/",),
 }
 """Beginnings of the paths that may import a package; a package without a line is free."""
 
 RUNTIME_PACKAGES = frozenset({"warp", "numpy", "scipy", "cv2", "av", "tqdm"})
 """Import names of the run-time dependencies."""
+
+EXTRA_PACKAGES = frozenset({"ezdxf", "pxr", "starlette", "uvicorn"})
+"""Import names of what extras install; it is imported only where it is used."""
 
 ALLOCATING_FILES = frozenset({"warp_kernels/energy/workspace.py", "warp_kernels/device/device.py"})
 """The only files that ask Warp for memory: the arrays of a job come from the workspace or through
@@ -153,7 +160,7 @@ def imports_point_downwards(module: Module) -> Iterator[Finding]:
 
 def imports_stay_at_home(module: Module) -> Iterator[Finding]:
     """A package with a home is imported only there, and nothing beyond the dependencies is."""
-    known = RUNTIME_PACKAGES | LEVELS.keys() | sys.stdlib_module_names
+    known = RUNTIME_PACKAGES | EXTRA_PACKAGES | LEVELS.keys() | sys.stdlib_module_names
     for line, name in module.imports():
         top = name.split(".")[0]
         if top not in known:

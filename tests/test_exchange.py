@@ -49,6 +49,8 @@ def test_registry_and_endings_agree() -> None:
 
 @pytest.mark.parametrize("ending", sorted(FORMATS))
 def test_numbered_files_and_single_frames(track: Path, ending: str) -> None:
+    if ending.startswith(".usd"):
+        pytest.importorskip("pxr", reason="pip install usd-core")
     written(track, f"n_##{ending}", styles="flat")
     for number in range(2):
         assert (track.parent / f"n_{number:02}{ending}").stat().st_size > 100

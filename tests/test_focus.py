@@ -27,7 +27,7 @@ from stages.focus.face import Face, emphasis
 from stages.focus.faces import Auto, Faces
 from stages.focus.none import NoFocus
 from stages.focus.picture import Picture
-from stages.focus.search import OPENING, SURE, FaceSearch
+from stages.focus.search import OPENING, PASSING, STILL, SURE, FaceSearch
 from stages.focus.yunet import MODEL, YuNet
 from stages.frame import Frame
 from stages.layouts.importance import Importance
@@ -37,7 +37,7 @@ from stages.motion.springs import FIRMEST, springs_of
 from stages.triangulate import Triangulator
 from tests import media_samples as samples
 from tests.jobs import job_of
-from tests.kernel_samples import frame_of
+from tests.kernel_samples import frame_of, noise
 from tests.test_coverage import grid_mesh
 from tests.tracks import QUICK, InTurn, rows_of, solve_to
 from warp_kernels.device.device import Device
@@ -143,6 +143,16 @@ def test_who_is_at_work() -> None:
     assert resolved((NoFocus(),), None) == resolved((Faces(strength=0.0),), None) == ()
     with pytest.raises(OptionError, match="none: goes with no other"):
         resolved((NoFocus(), Faces()), None)
+
+
+@pytest.mark.filterwarnings("error::RuntimeWarning")
+@pytest.mark.parametrize("size", [(4, 2000), (2000, 3), (1, 1), (2, 2), (1, 900)])
+def test_narrow_pictures_hold_no_face(size: tuple[int, int]) -> None:
+    """Of a few pixels across the network says anything; nothing of it is believed or overflows."""
+    pictures = (np.full((*size, 3), 200, np.uint8), noise(size[1], size[0]))
+    for pixels in pictures:
+        for most in (STILL, OPENING, PASSING):
+            assert FaceSearch().everywhere(pixels, most) == []
 
 
 @pytest.mark.parametrize(

@@ -12,8 +12,8 @@ import pytest
 
 from stages.exchange.figure import Figure
 from stages.exchange.solids.glb import FLOAT
+from stages.exchange.solids.gltf import MOST_POSES
 from stages.exchange.solids.linear_light import linear_light
-from stages.exchange.solids.runs import MOST_POSES
 from tests.films import figures_of, film_of, format_with, graded_figures, mixed_figures
 from tests.meshes import HEIGHT, two_triangles
 from tests.snapshots import snapshot_with

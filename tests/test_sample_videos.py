@@ -8,11 +8,13 @@ import numpy as np
 import pytest
 from av.video.reformatter import ColorRange
 
-from sample_videos import make_shapes
+from pipeline.cli import main
+from sample_videos import cut_to_song, make_shapes, make_song
 from sample_videos.make_shapes import CUT_FRAME, FRAME_COUNT, shape_positions
+from stages.hearing.listening.listen import listen
 
 FOLDER = Path(make_shapes.__file__).parent
-MEDIA = sorted(p for p in FOLDER.iterdir() if p.suffix in {".mp4", ".jpg", ".png"})
+MEDIA = sorted(p for p in FOLDER.iterdir() if p.suffix in {".mp4", ".jpg", ".png", ".ogg"})
 CENTER_TOLERANCE = 1.0
 """Largest distance [px] between a shape's centre and the centroid of its colour."""
 
@@ -104,6 +106,29 @@ def test_beeps_start_each_second() -> None:
         pause = sound[int((second + 0.4) * rate) : int((second + 0.6) * rate)]
         assert np.sqrt(np.mean(beep**2)) > 0.15
         assert np.abs(pause).max() < 0.005
+
+
+def test_song_has_the_beats_that_the_script_says() -> None:
+    """All of them are heard, near to where they were played, and so is the first of each bar."""
+    heard = listen(FOLDER / "song.ogg").heard
+    beats = np.arange(make_song.METER * make_song.BAR_COUNT) * make_song.BEAT
+    np.testing.assert_allclose(heard.beats[: len(beats)], beats, atol=0.01)
+    bars = beats[:: make_song.METER]
+    np.testing.assert_allclose(heard.downbeats[: len(bars)], bars, atol=0.01)
+
+
+def test_sections_of_the_show_begin_where_the_cut_does(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The timeline of the README fits its film, and its sections begin with its parts."""
+    film = tmp_path / "rough.mp4"
+    cut_to_song.cut(film)
+    words = ["timeline", str(FOLDER / "show.toml"), "--check", str(film)]
+    assert main([*words, "--audio", str(FOLDER / "song.ogg")]) == 0
+    table = capsys.readouterr().out.split("section\n")[1].split("\n\n")[0]
+    begins = [int(line.split()[2]) for line in table.splitlines()]
+    cuts = np.cumsum([0, *(end - first for _, first, end in cut_to_song.CUTS)])
+    assert begins == list(cuts[:-1])
 
 
 @pytest.mark.parametrize("frame", [-1, FRAME_COUNT])

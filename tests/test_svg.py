@@ -15,8 +15,8 @@ import trimotion
 from stages.exchange.exchange_options import ExchangeOptions
 from stages.exchange.figure import Figure
 from stages.exchange.film import Film
+from stages.exchange.plane.hatch import hatched
 from stages.exchange.svg.document import Svg
-from stages.exchange.svg.hatch import hatched
 from stages.exchange.svg.slopes import Slopes, best_slopes, channel_slopes
 from stages.look.framing import Framing
 from stages.look.paint import paint_of
@@ -188,7 +188,7 @@ def color_of(text: str) -> np.ndarray:
 
 def test_a_pen_a_layer_in_millimetres(track: Path) -> None:
     style = "crosshatching:paper=none,ink=#102030"
-    path = written(track, "m.svg", styles=style, frames=0, svg_mm=300)
+    path = written(track, "m.svg", styles=style, frames=0, mm=300)
     root = ElementTree.parse(path).getroot()
     assert (root.get("width"), root.get("height")) == ("300mm", "200mm")
     assert root.get("viewBox") == "0 0 96 64"
@@ -197,7 +197,7 @@ def test_a_pen_a_layer_in_millimetres(track: Path) -> None:
     assert [pen.get(label) for pen in pens] == ["1 #102030"]
     assert not list(root.iter(f"{DOCUMENT}rect"))
     with pytest.raises(OptionError, match="between 0"):
-        written(track, "n.svg", styles=style, frames=0, svg_mm=-1)
+        written(track, "n.svg", styles=style, frames=0, mm=-1)
 
 
 def test_frames_are_shown_in_turn_for_ever(track: Path) -> None:

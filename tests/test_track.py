@@ -187,7 +187,7 @@ def test_a_stranger_commands_no_terminal(copy: Path, capsys) -> None:
     """What a track says is printed without control characters, in descriptions and in errors."""
     spoil(copy, "UPDATE header SET value = '\"\\u001b[31m9\"' WHERE key = 'program'")
     assert main(["info", str(copy)]) == 0
-    assert "by trimotion ?[31m9" in capsys.readouterr().out
+    assert "by trimotion \\x1b[31m9" in capsys.readouterr().out
     spoil(copy, "UPDATE header SET value = '\"\\u001b[31m9\"' WHERE key = 'model'")
     assert "\x1b" not in failure(capsys, "info", copy)[1]
 

@@ -68,7 +68,7 @@ def batch_of(command: str, inputs: Sequence[str], output: str) -> Batch | None:
     notes: list[str] = []
     sources = [source for name in inputs for source in _files_of(command, name, notes)]
     folder = Path(output)
-    if not (folder.is_dir() or output.endswith(("/", os.sep))):
+    if not (os.path.isdir(folder) or output.endswith(("/", os.sep))):
         several = (
             f"{inputs[0]} is a folder" if len(inputs) == 1 else f"there are {len(inputs)} inputs"
         )

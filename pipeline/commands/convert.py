@@ -39,7 +39,7 @@ def check_options(arguments: argparse.Namespace) -> None:
     if arguments.command == "render":
         _wanted(arguments)
     elif arguments.command == "solve":
-        _solve_job(arguments)
+        solve_job(arguments)
     else:
         _job(arguments)
 
@@ -56,7 +56,7 @@ def _animate(arguments: argparse.Namespace) -> "Animated":
 def _solve(arguments: argparse.Namespace) -> "Animated":
     from pipeline.timeline.mesh_course import with_course
 
-    job = with_course(_solve_job(arguments))
+    job = with_course(solve_job(arguments))
     with progress_for(arguments) as progress:
         with importing():
             from pipeline.loop.animate import solve
@@ -110,8 +110,12 @@ def preview_of(arguments: argparse.Namespace) -> str:
     return tell(found, shown_name(job.output.path))
 
 
-def _solve_job(arguments: argparse.Namespace) -> "Job":
-    """What is solved; looks, which a preset may hold, do not belong to a track."""
+def solve_job(arguments: argparse.Namespace) -> "Job":
+    """What is solved; looks, which a preset may hold, do not belong to a track.
+
+    Args:
+        arguments: What the user gave.
+    """
     return _job(arguments, track=arguments.output, output=None, styles=(), regions=())
 
 
@@ -122,7 +126,7 @@ def _wanted(arguments: argparse.Namespace) -> "tuple[FrameRange, Look, Output, R
     from pipeline.track.kind import drawn_ending
 
     path = Path(arguments.track)
-    wanted, look, output, run = build_render(_given(arguments), path, drawn_ending(path))
+    wanted, look, output, run = build_render(given_by(arguments), path, drawn_ending(path))
     return wanted, staged(look), output, run
 
 
@@ -136,11 +140,15 @@ def _job(arguments: argparse.Namespace, **fixed: object) -> "Job":
     from pipeline.options.build import build_job
     from pipeline.timeline.staging import with_timeline
 
-    return with_timeline(build_job({**_given(arguments), **fixed}))
+    return with_timeline(build_job({**given_by(arguments), **fixed}))
 
 
-def _given(arguments: argparse.Namespace) -> dict[str, object]:
-    """What the arguments and their preset give."""
+def given_by(arguments: argparse.Namespace) -> dict[str, object]:
+    """What the arguments and their preset give.
+
+    Args:
+        arguments: What the user gave; options that were left out are absent.
+    """
     from pipeline.options.command_line import with_preset
     from pipeline.options.presets import read_preset
 

@@ -27,11 +27,20 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
         "render clip.mtrk -o ink.mp4 --style crosshatching:paper=#f8f4ea --frames 100-199",
         "render clip.mtrk -o glass.mp4 --source moved/clip.mp4 --style lenses",
     ),
+    "edit": (
+        "edit clip.mp4 --triangles 1500",
+        "edit photo.jpg",
+        "edit clip.mtrk --no-open --port 8000",
+    ),
     "preview": (
         "preview clip.mp4",
         "preview clip.mp4 -o look.png --style hatching --triangles 3000 --scale 2",
     ),
-    "plan": ("plan film.mp4", "plan film.mp4 --parts 4 --json"),
+    "plan": (
+        "plan film.mp4",
+        "plan film.mp4 --parts 4 --json",
+        "plan film.mp4 --format slurm -o film.mtrk --triangles 3000 > film.sh",
+    ),
     "join": ("join part1.mtrk part2.mtrk part3.mtrk -o film.mtrk",),
     "info": ("info clip.mp4", 'info "shot_####.png"', "info clip.mtrk --json"),
     "measure": (

@@ -4,35 +4,26 @@ import argparse
 import re
 from typing import Any, NoReturn
 
+from pipeline.commands.editing.grammar import EDIT_ABOUT, EDIT_USAGE, add_edit_options
 from pipeline.commands.examples import ABOUT_ALL, EXAMPLES, shown
+from pipeline.commands.farm.grammar import (
+    JOIN_ABOUT,
+    JOIN_USAGE,
+    PLAN_ABOUT,
+    PLAN_USAGE,
+    add_join_options,
+    add_plan_options,
+)
 from pipeline.commands.hearing.grammar import LISTEN_ABOUT, LISTEN_USAGE, add_listen_options
+from pipeline.commands.overview import COMMANDS_HELP
 from pipeline.commands.style_list import registry_help
 from pipeline.commands.unknown import no_command, unknown_arguments
 from pipeline.options.command_line import add_job_options
 from pipeline.options.values import text_value, whole_number
+from pipeline.printable import one_line
 from pipeline.progress import CHOICES
 
 ABOUT = "Turn videos into coherent triangulated animations."
-
-COMMANDS_HELP = """\
-commands:
-  animate INPUT -o OUTPUT    convert a video, a still or numbered stills
-  solve INPUT -o JOB.mtrk    convert to a mesh track, from which any look can be drawn
-  render JOB.mtrk -o OUTPUT  draw a mesh track
-  preview INPUT              five moments of that, and the time that it would take
-  plan INPUT                 ranges of whole shots, for runs on several machines
-  join A.mtrk B.mtrk ... -o OUT.mtrk   put the tracks of ranges together
-  info FILE                  what a file is: a source or a mesh track
-  measure SOURCE OUTPUT      how close an output is to its source, and how coherent
-  styles [NAME]              styles and moves with their parameters; --sheet draws them
-  timeline SHOW.toml|NAME --check CLIP   what a timeline does when, without solving
-  listen SONG|CLIP -o SONG.beats.json   beats, bars, onsets and strengths of a sound
-  completion bash|zsh|fish   a script by which a shell completes all of this
-  help [COMMAND]             this text, or the options of a command
-
-trimotion COMMAND --help tells the options of a command, too.
-
-"""
 
 WHERE_PARAMETERS = """\
 trimotion styles lists every style and move with its parameters, trimotion styles NAME those of one.
@@ -51,7 +42,7 @@ class OneLineParser(argparse.ArgumentParser):
         found = _CHOICE.match(message)
         if found:
             message = no_command(found[1], self.commands())
-        line = " ".join(message.removeprefix("argument ").split())
+        line = one_line(message.removeprefix("argument "))
         self.exit(2, f"trimotion: error: {line}; see {self.prog} --help\n")
 
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
@@ -102,6 +93,7 @@ def build_parser() -> OneLineParser:
     _add_animate(commands)
     _add_solve(commands)
     _add_render(commands)
+    _add_edit(commands)
     _add_preview(commands)
     _add_plan(commands)
     _add_join(commands)
@@ -165,6 +157,13 @@ def _add_render(commands: Any) -> None:
     _add_messages(parser)
 
 
+def _add_edit(commands: Any) -> None:
+    parser = _command(commands, "edit", EDIT_ABOUT, EDIT_USAGE)
+    add_edit_options(parser)
+    add_job_options(parser, "edit")
+    _add_telling(parser.add_argument_group("messages"))
+
+
 def _add_preview(commands: Any) -> None:
     parser = _command(
         commands,
@@ -187,33 +186,13 @@ def _add_preview(commands: Any) -> None:
 
 
 def _add_plan(commands: Any) -> None:
-    parser = _command(
-        commands,
-        "plan",
-        "Print ranges of whole shots, one a line: solved apart and joined they are the whole.",
-        "trimotion plan INPUT [--parts N] [--json]",
-    )
-    parser.add_argument("source", metavar="INPUT", type=text_value, help="what FFmpeg reads")
-    parser.add_argument(
-        "--parts", metavar="N", type=whole_number, help="at most so many (default: one a shot)"
-    )
-    parser.add_argument("--json", action="store_true", help="print JSON")
-    add_job_options(parser, "plan")
+    parser = _command(commands, "plan", PLAN_ABOUT, PLAN_USAGE)
+    add_plan_options(parser)
 
 
 def _add_join(commands: Any) -> None:
-    parser = _command(
-        commands,
-        "join",
-        "Put the tracks of ranges that follow each other together.",
-        "trimotion join A.mtrk B.mtrk ... -o OUT.mtrk",
-    )
-    parser.add_argument(
-        "tracks", metavar="TRACK.mtrk", nargs="+", type=text_value, help="in any order"
-    )
-    _add_output(parser, "OUT.mtrk", "the joined track")
-    parser.add_argument("--overwrite", action="store_true", help="replace an existing track")
-    parser.add_argument("-q", "--quiet", action="store_true", help="tell errors only")
+    parser = _command(commands, "join", JOIN_ABOUT, JOIN_USAGE)
+    add_join_options(parser)
 
 
 def _add_inputs(parser: argparse.ArgumentParser, metavar: str, text: str) -> None:

@@ -5,6 +5,7 @@ import json
 from pathlib import Path
 
 from pipeline.options.edit_log import EditLog
+from pipeline.printable import printable
 from pipeline.track import TrackReader, is_track
 from pipeline.track.plain_values import to_plain
 from pipeline.track.schema import FORMAT
@@ -63,12 +64,7 @@ def _log_in(track: Path) -> EditLog:
 
 def _aligned(rows: list[tuple[str, str]]) -> str:
     width = max(len(label) for label, _ in rows)
-    return "\n".join(f"{label:<{width}}  {_printable(value)}" for label, value in rows)
-
-
-def _printable(text: str) -> str:
-    """A stranger's text without what could command a terminal."""
-    return "".join(letter if letter.isprintable() else "?" for letter in text)
+    return "\n".join(f"{label:<{width}}  {printable(value)}" for label, value in rows)
 
 
 def _facts(track: TrackReader) -> dict[str, object]:

@@ -34,10 +34,12 @@ def piped(arguments: argparse.Namespace) -> Iterator[None]:
     given = vars(arguments)
     inputs = [key for key in inputs_of(arguments) if given.get(key) == PIPE]
     output = given.get("output") or ""
-    writes = is_pipe(output) and arguments.command != "measure"
+    writes = is_pipe(output) and arguments.command not in ("measure", "plan")
     if not inputs and not writes:
         yield
         return
+    if arguments.command == "plan" and given["format"] not in ("text", "json"):
+        raise OptionError("-: no farm can read this pipe; give the name of a file")
     if len(inputs) > 1:
         raise OptionError("-: standard input is one file; give the other one a name")
     if writes and given.get("progress") == "json":

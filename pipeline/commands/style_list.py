@@ -2,9 +2,9 @@
 
 import inspect
 import json
+import os
 from collections.abc import Iterable, Iterator
 from dataclasses import MISSING, Field
-from pathlib import Path
 from typing import Any
 
 from pipeline.options.command_line import job_options
@@ -118,7 +118,7 @@ def _check(name: str, members: Iterable[str]) -> None:
     """Refuse what is no style; it may be a picture, which only a sheet shows."""
     if name in members:
         return
-    if Path(name).is_file():
+    if os.path.isfile(name):
         raise OptionError(
             f"styles {name}: is a file, not a style; to draw it in every style add --sheet OUT.png"
         )

@@ -1,6 +1,7 @@
 """What to say about words of the command line that mean nothing."""
 
 import difflib
+import os
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
@@ -13,7 +14,7 @@ SEVERAL = ("animate", "solve", "render")
 
 def no_command(word: str, known: Iterable[str]) -> str:
     """What to say about a first word that is no command."""
-    if Path(word).suffix or Path(word).exists():
+    if Path(word).suffix or os.path.exists(word):
         return f"{word!r}: a command comes first, as in trimotion animate {word} -o OUTPUT"
     return f"{word!r}: no such command; {nearest(word, known)}"
 
@@ -26,8 +27,8 @@ def unknown_arguments(arguments: Sequence[str], known: Sequence[str], command: s
         return f"{arguments[0]!r}: unknown argument{apart}"
     named = [option for option in job_options() if option.flag == first.lstrip("-")]
     owners = [name for name, has in COMMAND_OPTIONS.items() if any(map(has, named))]
-    # what preview and timeline have is that of animate
-    owners = [name for name in owners if name not in ("preview", "timeline")]
+    # what preview and timeline have is that of animate, and what plan and edit have that of solve
+    owners = [name for name in owners if name not in ("preview", "timeline", "plan", "edit")]
     if owners:
         some = ", ".join(owners[:-1])
         owned = f"{some} and {owners[-1]}" if some else owners[-1]

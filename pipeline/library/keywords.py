@@ -122,9 +122,10 @@ class OutputKeywords(TypedDict, total=False):
     svg_precision: int
     svg_merge: bool
     svg_gradients: str
-    svg_mm: float
+    mm: float
     relief: str | None
     lottie_limit: int
+    usd_single: bool
 
 
 class RenderKeywords(RangeKeywords, LookKeywords, OutputKeywords, DeviceKeywords, total=False):

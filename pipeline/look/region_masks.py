@@ -9,6 +9,7 @@ from pipeline.options.job import Job
 from pipeline.options.output import Output
 from pipeline.options.solve_options import SolveOptions
 from pipeline.track import TrackReader
+from stages.masks.painted import painted
 from stages.masks.region import Region
 from stages.masks.regions import Mask
 from stages.media import MediaInfo, count_frames, input_pattern, open_decoder
@@ -72,6 +73,8 @@ def own_mask(region: Region, frame: int, size: tuple[int, int]) -> np.ndarray:
     Raises:
         MediaError: If there is none for the frame, or it cannot be read.
     """
+    if region.areas:
+        return painted(region.areas, size)
     try:
         mask = Mask(region.mask, size, is_single=True)
         try:

@@ -3,11 +3,14 @@
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from pipeline.edit_log.journal import EditJournal
+from pipeline.edit_log.painted_regions import PaintedRegions, painted_regions
 from pipeline.options.job import Job
 from pipeline.options.look import Look
 from pipeline.options.output import Output
 from pipeline.options.run import Run
 from pipeline.track import TrackReader
+from stages.exchange import is_exchange
 from stages.media import FrameRange, MediaInfo, input_pattern
 from warp_kernels.color_model import ColorModel
 from warp_kernels.errors import MediaError, OptionError, TrackError
@@ -35,7 +38,7 @@ def render_job(
     run: Run,
     source: Path | None,
 ) -> RenderJob:
-    """Combine a look with a track.
+    """Combine a look with a track; what edits in force in it give a style is drawn over the look.
 
     Args:
         track: The track.
@@ -53,9 +56,14 @@ def render_job(
     header = track.header
     options = replace(header.solve, frame_range=_range(wanted, track))
     last = track.rows[-1].frame
+    drawn = _drawn(track)
+    is_shape = output.path is not None and is_exchange(output.path)
+    look = look if is_shape else drawn.over(look)
     found, problem = _find(source, track, _needs(look, options.model, header.model))
     info = header.info
     notes = []
+    if is_shape and drawn.regions:
+        notes.append(f"{output.path}: styles of regions, which edits gave, are left out")
     if wanted.last is not None and wanted.last > last:
         notes.append(f"frames {wanted}: the track ends with frame {last}")
     if found is None:
@@ -64,11 +72,20 @@ def render_job(
         info = replace(info, audio_codec=None, audio_channels=None, audio_rate=None)
     else:
         options, info = replace(options, source=found), replace(info, path=found)
-    warnings: tuple[str, ...] = ()
+    warnings = drawn.refused
     if not header.finished:
-        warnings = (f"{track.path} is unfinished: its frames end with {last}",)
+        warnings = (f"{track.path} is unfinished: its frames end with {last}", *warnings)
     job = Job(options, look, output, run)
     return RenderJob(job, info, tuple(notes), warnings)
+
+
+def _drawn(track: TrackReader) -> PaintedRegions:
+    """What edits that are in force in a track give a style."""
+    if track.header.solve.independent:
+        return PaintedRegions()
+    with EditJournal(track.path) as journal:
+        log = journal.log
+    return painted_regions(log, {row.frame for row in track.rows})
 
 
 def _range(wanted: FrameRange, track: TrackReader) -> FrameRange:

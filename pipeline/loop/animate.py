@@ -10,6 +10,7 @@ from time import perf_counter
 
 import numpy as np
 
+from pipeline.edit_log.painted_regions import painted_regions
 from pipeline.look.outputs import check_output_of
 from pipeline.look.region_masks import check_followed
 from pipeline.look.render_job import render_job
@@ -59,7 +60,8 @@ def animate(job: Job, progress: Progress, runner: RangeRunner | None = None) -> 
     job = with_course(job)
     job = replace(job, solve=with_seam(job.solve))
     with alone(job.output.path, job.output.track):
-        if runner.places > 1 or job.look.followed or job.solve.seam.over:
+        is_followed = job.look.followed or painted_regions(job.solve.edits).regions
+        if runner.places > 1 or is_followed or job.solve.seam.over:
             return _solved_then_drawn(job, progress, runner)
         return with_unreached(job.solve, convert(job, job.fitted, progress))
 
@@ -180,7 +182,8 @@ def _solved_then_drawn(job: Job, progress: Progress, runner: RangeRunner) -> Ani
     track = output.track or PendingFile(output.path).path.with_suffix(ENDING)
     try:
         kept = replace(output, track=track)
-        solved = _solved(options, kept, job.run, both, job.fitted, runner)
+        fitted = replace(job, look=painted_regions(options.edits).over(job.look)).fitted
+        solved = _solved(options, kept, job.run, both, fitted, runner)
         with TrackReader(track) as reader:
             made = render_job(reader, wanted, job.look, output, job.run, options.source)
             both.second_half()

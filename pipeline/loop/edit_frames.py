@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+from pipeline.edit_log.painted_regions import painted_regions
 from pipeline.loop.result import Animated
 from pipeline.options.solve_options import SolveOptions
 from stages.media import MediaInfo, count_frames
@@ -36,7 +37,8 @@ def check_edits(options: SolveOptions, info: MediaInfo) -> None:
 
 
 def with_unreached(options: SolveOptions, result: Animated) -> Animated:
-    """What a run came to, with a note on edits of frames that were not solved.
+    """What a run came to, with a note on edits of frames that were not solved, and warnings of
+    styles that cannot be drawn.
 
     Args:
         options: What was solved.
@@ -44,6 +46,7 @@ def with_unreached(options: SolveOptions, result: Animated) -> Animated:
     """
     if options.edits is None:
         return result
+    result = replace(result, warnings=(*result.warnings, *painted_regions(options.edits).refused))
     wanted = options.frame_range
     last = wanted.last
     missed = [

@@ -20,6 +20,7 @@ from stages.flows.view import View
 from stages.frame import Frame
 from stages.hand.locks import Locks
 from stages.hand.worked import Worked
+from stages.media.set_aside import ROOM, AsideFrame, SetAside
 from stages.motion.advect import Carried
 from stages.motion.meeting import Meeting
 from stages.snapshot import Snapshot
@@ -32,12 +33,23 @@ other."""
 
 @dataclass(frozen=True, eq=False)
 class _Found:
-    """A frame that is solved but not final."""
+    """A frame that is solved but not final; the motion that led to it is not needed again."""
 
-    ready: Prepared
+    shot: int
+    """Number of the frame with which its shot begins."""
+    aside: AsideFrame
     """The frame."""
     snapshot: Snapshot
     """What it became so far."""
+
+    def solved(self, *, keeps_picture: bool) -> Solved:
+        """The frame as it goes on to the output.
+
+        Args:
+            keeps_picture: Whether a look shows the source.
+        """
+        source = self.aside.frame().pixels if keeps_picture else None
+        return Solved(self.shot, self.snapshot, source)
 
 
 class EditedFrames:
@@ -48,6 +60,7 @@ class EditedFrames:
         options: Say how frames begin, and what the edits are.
         before: What the last frame of an earlier run became, or None.
         keeps: Whether what draws the frames needs their pictures.
+        room: Bytes of pictures that wait in memory for an edited frame; others wait in a file.
     """
 
     def __init__(
@@ -57,12 +70,14 @@ class EditedFrames:
         before: Snapshot | None,
         *,
         keeps: bool,
+        room: int = ROOM,
     ) -> None:
         self._triangulator, self._options = triangulator, options
         self._log = options.edits or EditLog()
         self._keeps = keeps
+        self._aside = SetAside(room)
         self._waiting: list[_Found] = []
-        self._edited: _Found | None = None  # the last edited frame of the shot
+        self._has_edited = False  # whether a frame of the shot was edited before
         self._snapshot = before
         self.refused: list[str] = []
         """What could not be made, one sentence for each edit."""
@@ -73,34 +88,40 @@ class EditedFrames:
         Args:
             found: The frames, and the motion between them.
         """
-        shot = None
-        for ready in found:
-            if ready.shot != shot:
-                yield from self._given()
-                shot, self._edited = ready.shot, None
-            self._snapshot = followed(self._triangulator, self._options, ready, self._snapshot)
-            if ready.mesh_from is MeshFrom.TRACK:
-                continue
-            # the motion that led here is not needed again, and holds two pictures
-            here = _Found(replace(ready, mesh_from=MeshFrom.LAYOUT), self._snapshot)
-            self._waiting.append(here)
-            if ready.frame.index in self._log.frames:
-                yield from self._edit()
-            elif self._log.next_frame(ready.frame.index) is None:
-                yield from self._given()
-        yield from self._given()
+        try:
+            shot = None
+            for ready in found:
+                if ready.shot != shot:
+                    yield from self._given()
+                    shot, self._has_edited = ready.shot, False
+                yield from self._next(ready)
+            yield from self._given()
+        finally:
+            self._aside.clear()
+
+    def _next(self, ready: Prepared) -> Iterator[Solved]:
+        """Solve the next frame of a shot, and hand on what is final by that."""
+        self._snapshot = followed(self._triangulator, self._options, ready, self._snapshot)
+        if ready.mesh_from is MeshFrom.TRACK:
+            return
+        index = ready.frame.index
+        self._waiting.append(_Found(ready.shot, self._aside.put(ready.frame), self._snapshot))
+        if index in self._log.frames:
+            yield from self._edit()
+        if self._log.next_frame(index + 1) is None:
+            yield from self._given()
 
     def _given(self) -> Iterator[Solved]:
         """Hand on what waits: it is final."""
         for left, one in zip(range(len(self._waiting))[::-1], self._waiting, strict=True):
-            solved = one.ready.solved(one.snapshot, keeps_picture=self._keeps)
-            yield replace(solved, has_more=left > 0)
+            yield replace(one.solved(keeps_picture=self._keeps), has_more=left > 0)
         self._waiting = []
+        self._aside.clear()
 
     def _edit(self) -> Iterator[Solved]:
         """Make the edits of the frame that was solved last, and let them reach back."""
         here = self._waiting[-1]
-        frame = here.ready.frame
+        frame = here.aside.frame()
         begun = Worked(here.snapshot.mesh, here.snapshot.locks)
         replayed = self._log.replay(frame.index, begun)
         self.refused += replayed.refused
@@ -108,11 +129,11 @@ class EditedFrames:
             return
         snapshot = self._triangulator.next(frame, Carried.by_hand(replayed.worked))
         made = snapshot.locks.but_for(begun.locks)
-        here = _Found(here.ready, snapshot)
+        here = replace(here, snapshot=snapshot)
         self._waiting = [*self._reached_back(here, self._waiting[:-1], made), here]
         here = self._resumed(here)
         self._waiting[-1] = here
-        self._edited, self._snapshot = here, here.snapshot
+        self._has_edited, self._snapshot = True, here.snapshot
         yield from self._given()
 
     def _reached_back(self, edited: _Found, before: Sequence[_Found], made: Locks) -> list[_Found]:
@@ -123,7 +144,7 @@ class EditedFrames:
             before: Those before it that are not final, in order.
             made: What its own edits hold fast.
         """
-        if self._edited is None:
+        if not self._has_edited:
             return self._backwards(edited, before)
         half = len(before) // 2
         fade = min(FADE, half)
@@ -150,8 +171,8 @@ class EditedFrames:
         if mesh is None:
             return nearer
         locks = pair[0].snapshot.locks.joined(pair[1].snapshot.locks).within(mesh)
-        snapshot = self._triangulator.fit(nearer.ready.frame, mesh)
-        return _Found(nearer.ready, replace(snapshot, locks=locks))
+        snapshot = self._triangulator.fit(nearer.aside.frame(), mesh)
+        return replace(nearer, snapshot=replace(snapshot, locks=locks))
 
     def _backwards(
         self, edited: _Found, before: Sequence[_Found], made: Locks | None = None
@@ -163,33 +184,35 @@ class EditedFrames:
             before: Those before it, in order; they are solved again.
             made: What edits of the frame hold fast, if all else shall stay as it was solved.
         """
-        later, again = edited, []
-        view = View(later.ready.frame.pixels)
+        later, snapshot, again = edited.aside.frame(), edited.snapshot, []
+        view = View(later.pixels)
         for one in reversed(before):
-            earlier = View(one.ready.frame.pixels)
+            frame = one.aside.frame()
+            earlier = View(frame.pixels)
             passage = Passage.between(self._options.flow, view, earlier)
-            is_same = passage.is_still and _weigh_alike(one.ready.frame, later.ready.frame)
+            is_same = passage.is_still and _weigh_alike(frame, later)
             mesh_from = MeshFrom.SAME_PICTURE if is_same else passage
-            ready = replace(one.ready, mesh_from=mesh_from)
-            snapshot = followed(self._triangulator, self._options, ready, later.snapshot)
+            ready = Prepared(one.shot, frame, mesh_from)
+            snapshot = followed(self._triangulator, self._options, ready, snapshot)
             if made is not None:
-                snapshot = self._but_for(made, one, snapshot)
-            later, view = _Found(one.ready, snapshot), earlier
-            again.append(later)
+                snapshot = self._but_for(made, one, frame, snapshot)
+            later, view = frame, earlier
+            again.append(replace(one, snapshot=snapshot))
         return again[::-1]
 
-    def _but_for(self, made: Locks, one: _Found, again: Snapshot) -> Snapshot:
+    def _but_for(self, made: Locks, one: _Found, frame: Frame, again: Snapshot) -> Snapshot:
         """What a frame was, with what edits made of it.
 
         Args:
             made: What the edits hold fast.
             one: The frame as it was solved forwards.
+            frame: The frame itself.
             again: What it became backwards.
         """
         mesh = Meeting(one.snapshot.mesh, again.mesh).only(made)
         if mesh is None:
             return again
-        snapshot = self._triangulator.fit(one.ready.frame, mesh)
+        snapshot = self._triangulator.fit(frame, mesh)
         locks = one.snapshot.locks.joined(again.locks).within(mesh)
         return replace(snapshot, locks=locks)
 
@@ -203,8 +226,8 @@ class EditedFrames:
             next_triangle_id=max(one.next_triangle_id for one in meshes),
         )
         snapshot = replace(edited.snapshot, mesh=mesh)
-        self._triangulator.recall(edited.ready.frame, snapshot)
-        return _Found(edited.ready, snapshot)
+        self._triangulator.recall(edited.aside.frame(), snapshot)
+        return replace(edited, snapshot=snapshot)
 
 
 def _lines(meeting: Meeting, shares: np.ndarray) -> np.ndarray:

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from stages.hand import EDITS, Edit
+from stages.hand import DRAWN, EDITS, Edit
 from warp_kernels.errors import EditError
 
 if TYPE_CHECKING:
@@ -36,13 +36,19 @@ class EditLog:
         """The frames that are edited, ascending."""
         return tuple(sorted({edit.frame for edit in self.edits}))
 
+    @cached_property
+    def mesh_frames(self) -> tuple[int, ...]:
+        """The frames whose meshes are edited, ascending."""
+        changing = (e.frame for e in self.edits if EDITS.name_of(type(e)) not in DRAWN)
+        return tuple(sorted(set(changing)))
+
     def next_frame(self, index: int) -> int | None:
-        """The first edited frame from a frame on, or None.
+        """The first frame from a frame on whose mesh is edited, or None.
 
         Args:
             index: Number of the frame.
         """
-        return next((frame for frame in self.frames if frame >= index), None)
+        return next((frame for frame in self.mesh_frames if frame >= index), None)
 
     def replay(self, frame: int, worked: "Worked") -> Replayed:
         """Make the edits of a frame, in their order.
@@ -58,6 +64,17 @@ class EditLog:
             try:
                 worked = edit.apply(worked)
             except EditError as error:
-                name = EDITS.name_of(type(edit))
-                refused.append(f"edit {number} ({name} in frame {frame}) was left out: {error}")
+                refused.append(left_out(number, edit, error))
         return Replayed(worked, tuple(refused))
+
+
+def left_out(number: int, edit: Edit, error: Exception) -> str:
+    """What is told of an edit that cannot be made.
+
+    Args:
+        number: Its place in the log, from 1.
+        edit: The edit.
+        error: Why.
+    """
+    name = EDITS.name_of(type(edit))
+    return f"edit {number} ({name} in frame {edit.frame}) was left out: {error}"

@@ -1,10 +1,10 @@
 """Members of a registry as users write them: `edges:width=1.5,color=#222`, `importance:MAP.png`."""
 
 import inspect
+import os
 from argparse import ArgumentTypeError
 from collections.abc import Mapping
 from dataclasses import Field, fields
-from pathlib import Path
 from typing import Any
 
 from pipeline.options.nearest import nearest
@@ -56,7 +56,7 @@ def _values(name: str, rest: str, kinds: Mapping[str, str]) -> dict[str, Any]:
     """Values of what follows a name; the first may be a text or a file without its key."""
     first = next(iter(kinds), "")
     takes_bare = kinds.get(first) in NAMES
-    if takes_bare and Path(rest).is_file():
+    if takes_bare and os.path.isfile(rest):
         return {first: read_value(kinds[first], rest)}  # whatever signs its name holds
     values: dict[str, Any] = {}
     for number, item in enumerate(rest.split(",") if rest else []):

@@ -31,7 +31,7 @@ def output_in(output: str | Path, source: str | Path, ending: str | None = None)
     """
     text = os.fspath(output)
     place = Path(text)
-    if not (place.is_dir() or text.endswith(("/", os.sep))):
+    if not (os.path.isdir(place) or text.endswith(("/", os.sep))):
         return place
     name = Path(source)
     own = name.suffix.lower()
@@ -49,7 +49,7 @@ def is_still(source: Path) -> bool:
     Args:
         source: A file; what cannot be read is none.
     """
-    if not source.is_file():
+    if not os.path.isfile(source):
         return False
     from stages.media import probe
 

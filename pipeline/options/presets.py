@@ -29,7 +29,7 @@ def read_preset(name: str) -> dict[str, object]:
             f"--preset {name}: cannot be read ({str(error.strerror).lower()}); "
             f"{nearest(name, shipped, 'give a TOML file or one of')}"
         ) from error
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise OptionError(f"--preset {name}: not a TOML file ({error}); mend it") from error
     options = {option.flag: option for option in job_options()}
     values: dict[str, object] = {}

@@ -3,6 +3,7 @@
 A track stores these options, and `--resume` and `join` compare them.
 """
 
+import os
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -129,7 +130,7 @@ class SolveOptions:
             raise OptionError(f"--loop {self.loop}: must lie between 0 (no loop) and {MAX_LOOP}")
         if self.seed < 0:
             raise OptionError(f"--seed {self.seed}: must be 0 or more")
-        if self.cuts not in ("auto", "none") and not Path(self.cuts).is_file():
+        if self.cuts not in ("auto", "none") and not os.path.isfile(self.cuts):
             raise OptionError(
                 f"--cuts {self.cuts}: no such file; give auto, none or a file of frame numbers"
             )

@@ -1,5 +1,6 @@
 """Grades and palettes as users write them: `saturation=0.5`, `#123,#fa0:mode=nearest`."""
 
+import os
 import re
 from pathlib import Path
 
@@ -45,7 +46,7 @@ def parse_palette(text: str) -> Palette:
     """
     match = _PARAMETERS.fullmatch(text)
     assert match is not None
-    what, rest = (text, "") if Path(text).is_file() else (match[1], match[2] or "")
+    what, rest = (text, "") if os.path.isfile(text) else (match[1], match[2] or "")
     kinds = {"mode": "str", "amount": "float", "hold": "float", "count": "int"}
     values = parse_parameters("--palette", text, "a palette", rest, kinds)
     count = values.pop("count", None)
@@ -64,7 +65,7 @@ def _colors(what: str, count: int | None) -> tuple[tuple[Color, ...], bool]:
     """The colours of a file, of a name, or those that are listed, and whether in an order."""
     path = Path(what)
     ending = path.suffix.lower()
-    if path.is_file() and ending not in ENDINGS:
+    if os.path.isfile(path) and ending not in ENDINGS:
         from stages.toning.picture_colors import colors_of_picture
 
         return colors_of_picture(what, count or COUNT), False

@@ -1,5 +1,6 @@
 """Read a timeline: a TOML file, or the name of a shipped one."""
 
+import os
 import re
 import tomllib
 from collections.abc import Mapping
@@ -115,7 +116,7 @@ def _beats(tables: Mapping[str, Any], places: Places) -> Heard | None:
         raise place.error(f"beats = {name!r}: write the name of a file that trimotion reads")
     beside = Path(places.file).parent / name
     try:
-        return read_beats(beside if beside.is_file() else Path(name))
+        return read_beats(beside if os.path.isfile(beside) else Path(name))
     except OSError as error:  # a name that no file can have
         reason = str(error.strerror).lower()
         raise place.error(f"beats = {name[:30]!r}: {reason}; write the name of a file") from error

@@ -1,5 +1,6 @@
 """What is drawn of a track: a still, or a clip."""
 
+import os
 from pathlib import Path
 
 from pipeline.track.reader import TrackReader, is_track
@@ -13,7 +14,7 @@ def is_of_a_still(path: Path) -> bool:
         path: A file; what cannot be read is none, and whoever opens it says what is wrong.
     """
     try:
-        if not (path.is_file() and is_track(path)):
+        if not (os.path.isfile(path) and is_track(path)):
             return False
         with TrackReader(path) as track:
             return track.header.info.kind == "image"

@@ -1,5 +1,6 @@
 """A track in the place of a source."""
 
+import os
 from pathlib import Path
 
 from pipeline.track.reader import is_track
@@ -15,7 +16,7 @@ def refuse_track(source: Path) -> None:
     Raises:
         MediaError: If it is a mesh track.
     """
-    if source.is_file() and is_track(source):
+    if os.path.isfile(source) and is_track(source):
         raise MediaError(
             source, "is a mesh track, which is solved already", "draw it with trimotion render"
         )

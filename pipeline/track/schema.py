@@ -20,6 +20,7 @@ them is the last one in force. `pipeline.edit_log.journal` writes both, from the
 until then the log with which the frames were solved, in the header, is all that there is.
 """
 
+import os
 import sqlite3
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -227,7 +228,7 @@ def _connect(path: Path, mode: str) -> sqlite3.Connection:
 def _check_file(path: Path) -> None:
     """Refuse what is no file of SQLite."""
     try:
-        if not (path.is_file() or path.is_dir() or not path.exists()):
+        if os.path.exists(path) and not (path.is_file() or path.is_dir()):
             raise TrackError(f"{path}: is not a regular file; give the name of a track")
         with path.open("rb") as file:
             head = file.read(100)

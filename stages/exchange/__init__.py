@@ -15,12 +15,16 @@ if TYPE_CHECKING:
 
 FORMATS = {
     ".csv": "stages.exchange.table:Table",
+    ".dxf": "stages.exchange.dxf.document:Dxf",
     ".glb": "stages.exchange.solids.gltf:Gltf",
     ".json": "stages.exchange.lottie.document:Lottie",
     ".npz": "stages.exchange.arrays:Arrays",
     ".obj": "stages.exchange.solids.obj:Obj",
     ".ply": "stages.exchange.solids.ply:Ply",
     ".svg": "stages.exchange.svg.document:Svg",
+    ".usd": "stages.exchange.usd.document:Usd",
+    ".usda": "stages.exchange.usd.document:Usd",
+    ".usdc": "stages.exchange.usd.document:Usd",
 }
 """Where the classes are, by ending."""
 

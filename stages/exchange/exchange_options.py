@@ -30,7 +30,7 @@ class ExchangeOptions:
     """Decimals of positions."""
     svg_merge: bool = field(
         default=False,
-        metadata={"help": "make one path of neighbours that have the same colour in .svg"},
+        metadata={"help": "make one path of neighbours that have the same colour in .svg and .dxf"},
     )
     """Whether neighbours of one colour become one path."""
 
@@ -44,11 +44,11 @@ class ExchangeOptions:
     )
     """How linear colours are written."""
 
-    svg_mm: float = field(
+    mm: float = field(
         default=0.0,
         metadata={
-            "help": "width of the picture in .svg on paper, in millimetres, for plotters and "
-            "cutters; 0 for a size in pixels",
+            "help": "width of .svg and .dxf in millimetres, for plotters and cutters; 0 for a size "
+            "in pixels, each a millimetre in .dxf",
             "metavar": "MM",
         },
     )
@@ -69,6 +69,15 @@ class ExchangeOptions:
     )
     """Most triangles of a frame in Lottie."""
 
+    usd_single: bool = field(
+        default=False,
+        metadata={
+            "help": "one mesh in .usd, whose triangles change in time, instead of one for each run "
+            "of frames in which none comes or goes; for programs that can read it"
+        },
+    )
+    """Whether USD has one mesh for the whole clip."""
+
     @cached_property
     def heights(self) -> Relief | None:
         """The relief that is wanted, or None."""
@@ -82,9 +91,9 @@ class ExchangeOptions:
             raise OptionError(
                 f"--svg-precision {self.svg_precision}: must lie between 0 and {MAX_PRECISION}"
             )
-        if not 0.0 <= self.svg_mm <= MAX_WIDTH:
+        if not 0.0 <= self.mm <= MAX_WIDTH:
             raise OptionError(
-                f"--svg-mm {self.svg_mm:g}: must lie between 0 (a size in pixels) and {MAX_WIDTH}"
+                f"--mm {self.mm:g}: must lie between 0 (a size in pixels) and {MAX_WIDTH}"
             )
         if self.svg_gradients not in GRADIENTS:
             raise OptionError(

@@ -5,7 +5,7 @@ from fractions import Fraction
 
 from stages.exchange.exchange_options import ExchangeOptions
 from stages.look.framing import Framing
-from warp_kernels.styles import Style
+from warp_kernels.styles import STYLES, Style
 
 
 @dataclass(frozen=True)
@@ -40,3 +40,18 @@ class Film:
             drawn / side for drawn, side in zip(self.framing.picture, self.size, strict=True)
         )
         return across, down
+
+    @property
+    def is_on_paper(self) -> bool:
+        """Whether it has a size in millimetres."""
+        return self.options.mm > 0.0 or self.ending == ".dxf"
+
+    @property
+    def names(self) -> list[str]:
+        """A name for each look: that of its style, and how often it was there already."""
+        styles = [STYLES.name_of(type(style)) for style in self.styles]
+        again = [styles[:number].count(name) for number, name in enumerate(styles)]
+        return [
+            f"{name}{times + 1}" if times else name
+            for name, times in zip(styles, again, strict=True)
+        ]

@@ -35,6 +35,11 @@ HOPELESS = 0.45
 """Below this mean of the first looks the others are spared."""
 ALIKE = 0.3
 """Answers whose squares share this part of their union are one face."""
+WIDEST = 8.0
+"""Logarithm of the largest face that is answered [steps of a grid]: in pictures of few pixels there
+are answers without bounds."""
+FARTHEST = 4.0
+"""And further away nothing is a face [longer sides of what the network gets]."""
 LEAST_SIZE = 10.0
 """Smaller faces are not believed [px of the picture that the network gets]."""
 
@@ -179,12 +184,13 @@ class YuNet:
         cells, steps = _cells(columns, rows)
         answers = np.empty((len(cells), 5, 2))
         answers[:, 0] = cells + boxes[:, :2] * steps
-        answers[:, 1] = np.exp(boxes[:, 2:]) * steps
+        answers[:, 1] = np.exp(np.minimum(boxes[:, 2:], WIDEST)) * steps
         seen = cells[:, None] + points.reshape(-1, 5, 2) * steps[:, None]
         answers[:, 2:4] = seen[:, :2]
         answers[:, 4] = seen[:, 3:].mean(axis=1)  # its corners; nobody asks for the nose
         both = np.clip(faceness, 0.0, 1.0) * np.clip(objectness, 0.0, 1.0)
-        return np.sqrt(both[:, 0]), answers
+        sane = (np.abs(answers) <= FARTHEST * max(rows, columns)).all(axis=(1, 2))
+        return np.where(sane, np.sqrt(both[:, 0]), 0.0), answers
 
 
 def _upright(pixels: np.ndarray, face: Face, size: float) -> tuple[np.ndarray, np.ndarray]:

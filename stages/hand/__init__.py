@@ -46,5 +46,10 @@ EDITS: Registry[Edit] = Registry(
         "retriangulate": "stages.hand.retriangulate:Retriangulate",
         "lock": "stages.hand.lock:Lock",
         "unlock": "stages.hand.unlock:Unlock",
+        "style_region": "stages.hand.regions.style_region:StyleRegion",
+        "texture_region": "stages.hand.regions.texture_region:TextureRegion",
     },
 )
+
+DRAWN = frozenset({"style_region", "texture_region"})
+"""Kinds that say how triangles are drawn, and change none."""

@@ -26,11 +26,20 @@ def check_brush(radius: float, count: int, spread: str, seed: int) -> None:
     Raises:
         EditError: Naming the first parameter that is impossible.
     """
-    if not 0 < radius < 1e5:
-        raise EditError(f"radius {radius:g}: must be above 0 px; give one such as 20")
+    check_radius(radius)
     check_count(count, seed)
     if spread not in SPREADS:
         raise EditError(f"spread {spread!r}: choose from {', '.join(SPREADS)}")
+
+
+def check_radius(radius: float) -> None:
+    """Refuse brushes without a size.
+
+    Raises:
+        EditError: If there is none such.
+    """
+    if not 0 < radius < 1e5:
+        raise EditError(f"radius {radius:g}: must be above 0 px; give one such as 20")
 
 
 def check_count(count: int, seed: int) -> None:

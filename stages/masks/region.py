@@ -1,9 +1,10 @@
 """A style inside of a mask."""
 
+import os
 import re
 from dataclasses import dataclass, field
-from pathlib import Path
 
+from stages.masks.area import Area
 from stages.media.naming import input_pattern
 from warp_kernels.errors import OptionError
 from warp_kernels.styles import STYLES, Style
@@ -22,6 +23,8 @@ class Region:
     frames: tuple[int, ...] = ()
     """Numbers of the frames for which the mask was drawn, ascending: the triangles that it shows
     there carry the style through their shot. Empty if the mask does not follow them."""
+    areas: tuple[Area, ...] = ()
+    """What a person pointed at in the one frame of the region, if `mask` names no file."""
 
     @classmethod
     def of(cls, text: str, style: Style, flag: str) -> "Region":
@@ -51,4 +54,4 @@ class Region:
 def _is_there(name: str) -> bool:
     """Whether a name is that of a file or of numbered stills."""
     pattern = input_pattern(name)
-    return Path(name).exists() if pattern is None else bool(pattern.numbers())
+    return os.path.exists(name) if pattern is None else bool(pattern.numbers())

@@ -4,6 +4,7 @@ A number field is two or more `#`, `%0Nd` or `$FN`; a single `#`, a `%` or a `$`
 of a name like any other character. A file that bears exactly the name of a pattern is that file.
 """
 
+import os
 import re
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -15,12 +16,16 @@ STILL_ENDINGS = frozenset({".png", ".jpg", ".jpeg", ".tif", ".tiff", ".webp"})
 
 SHAPES = {
     ".csv": True,
+    ".dxf": False,
     ".glb": True,
     ".json": True,
     ".npz": True,
     ".obj": False,
     ".ply": False,
     ".svg": True,
+    ".usd": True,
+    ".usda": True,
+    ".usdc": True,
 }
 """Endings of what is written as shapes and numbers, see `stages.exchange`, and whether one file
 holds a clip."""
@@ -115,7 +120,7 @@ class NumberedPattern:
 
     def _stills(self, anything: bool = False) -> list[tuple[int, str]]:
         """Numbers and names of the files that have any digits in the field's place."""
-        if not self.folder.is_dir():
+        if not os.path.isdir(self.folder):
             return []
         shape = re.compile(re.escape(self.prefix) + r"([0-9]{1,20})" + re.escape(self.suffix))
         entries = [entry for entry in self.folder.iterdir() if shape.fullmatch(entry.name)]
@@ -132,4 +137,4 @@ def input_pattern(path: str | Path) -> NumberedPattern | None:
     Raises:
         OptionError: If the name holds more than one number field.
     """
-    return None if Path(path).is_file() else NumberedPattern.parse(path)
+    return None if os.path.isfile(path) else NumberedPattern.parse(path)

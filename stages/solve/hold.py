@@ -75,6 +75,7 @@ class Hold:
             calm_flip=max(topology.calm_flip, 0.5 * self.share),
             relocated=free * topology.relocated,
             calm_relocated=free * topology.calm_relocated,
+            beside_boiling=free * topology.beside_boiling,
         )
 
 

@@ -61,8 +61,11 @@ class Energy:
     calm_floor: float = 1.0
     """In a followed picture a vertex moves elsewhere only for this gain per triangle there, as a
     part of the mean energy of a triangle."""
-    calm_relocated: float = 0.015
+    calm_relocated: float = 0.04
     """As `relocated`, in a followed picture."""
+    beside_boiling: float = 0.015
+    """As `calm_relocated`, where it is calm in a picture that boils in places: such a picture is
+    looked at more often."""
     calm_profit: float = 2.0
     """As `profit`, in a followed picture."""
     calm_hold: float = 1.15
@@ -221,9 +224,11 @@ class Energy:
             return 0
         if not goal.calm:
             return int(self.relocated * goal.count)
-        more = self.relocated - self.calm_relocated
-        boiling = 0 if goal.unrest is None else int(goal.unrest.boiling(mesh).sum())
-        return int(self.calm_relocated * goal.count + more * boiling)
+        if goal.unrest is None:
+            return int(self.calm_relocated * goal.count)
+        more = self.relocated - self.beside_boiling
+        boiling = int(goal.unrest.boiling(mesh).sum())
+        return int(self.beside_boiling * goal.count + more * boiling)
 
 
 def _lost(mesh: Mesh, collapses: np.ndarray) -> int:

@@ -15,9 +15,11 @@ from stages.exchange.solids.glb import MOST_BYTES, Block
 from stages.exchange.solids.gltf_animation import POINTER, VISIBILITY, animation_of, mesh_of
 from stages.exchange.solids.linear_light import linear_light
 from stages.exchange.solids.runs import MeshPose, MeshRuns
+from stages.exchange.solids.viewpoint import METRES, Viewpoint
 
-METRES = 0.001
-"""Length of a pixel: a picture becomes as large as a print of it."""
+MOST_POSES = 64
+"""Poses of a run. Graphics cards take at least 256 shapes to blend between, and which of n poses is
+seen takes n^2 numbers."""
 UNLIT = "KHR_materials_unlit"
 """Extension by which colours are shown as they are, whatever lights there are."""
 MATERIAL = {
@@ -45,7 +47,7 @@ class Gltf(Format):
 
     def __init__(self, film: Film) -> None:
         super().__init__(film)
-        self._runs = MeshRuns()
+        self._runs = MeshRuns(MOST_POSES)
 
     @classmethod
     def check(cls, film: Film) -> None:
@@ -101,18 +103,19 @@ class Gltf(Format):
         }
 
     def _viewer(self) -> dict[str, Any]:
-        distance = METRES * max(self.film.size)
+        distance = METRES * Viewpoint.of(self.film).distance
         return {"name": "camera", "camera": 0, "translation": [0, 0, distance]}
 
     def _camera(self) -> dict[str, Any]:
         """A camera whose picture is the picture."""
         width, height = self.film.size
+        view = Viewpoint.of(self.film)
         return {
             "type": "orthographic",
             "orthographic": {
                 "xmag": METRES * width / 2,
                 "ymag": METRES * height / 2,
-                "znear": 0,
-                "zfar": 4 * METRES * max(self.film.size),
+                "znear": METRES * view.near,
+                "zfar": METRES * view.far,
             },
         }

@@ -7,10 +7,6 @@ import numpy as np
 
 from stages.exchange.figure import Figure
 
-MOST_POSES = 64
-"""Poses of a run; a longer one is cut. Graphics cards take at least 256 shapes to blend between,
-and which of n poses is seen takes n^2 numbers."""
-
 
 @dataclass(frozen=True, eq=False)
 class MeshPose:
@@ -23,7 +19,7 @@ class MeshPose:
     points: np.ndarray
     """Positions, right, up and towards the viewer [px], [N, 3] float32."""
     colors: np.ndarray
-    """Linear light, [M, 3] float32."""
+    """Linear light of points, triangles or corners, [M, 3] float32."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,9 +43,13 @@ class MeshRuns:
 
     Triangles that come, go or change their corners end a run, and so does a cut: between two frames
     of a run every point goes its way, which would be nonsense across such a change.
+
+    Args:
+        most_poses: Poses of a run; a longer one is cut. None for any number.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, most_poses: int | None) -> None:
+        self._most_poses = most_poses
         self.found: list[MeshRun] = []
         """The runs, earliest first."""
         self._key: tuple[int, np.ndarray, np.ndarray] | None = None
@@ -64,7 +64,7 @@ class MeshRuns:
         """
         mesh = figure.mesh
         key = (figure.shot, mesh.triangle_ids, mesh.vertex_ids[mesh.triangles])
-        if self._goes_on(key) and len(self.found[-1].poses) < MOST_POSES:
+        if self._goes_on(key) and len(self.found[-1].poses) != self._most_poses:
             self.found[-1].poses.append(pose)
         else:
             self.found.append(MeshRun(triangles, [pose]))

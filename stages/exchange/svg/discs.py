@@ -6,6 +6,7 @@ import numpy as np
 
 from stages.exchange.figure import Figure
 from stages.exchange.film import Film
+from stages.exchange.plane.discs import packed
 from stages.exchange.svg.layers import Layer
 from stages.exchange.svg.text import elements, hexes, ids_of, lines_of, path_data, rounded
 from warp_kernels.drawing.paint import shapes_of
@@ -15,36 +16,14 @@ from warp_kernels.styles.incircles import Incircles
 
 STOPS = 12
 """Straight pieces by which the fall of opacity towards a rim is written: off by 0.5 % at most."""
-MOST = 400
-"""Discs of a chain into a corner, at most: the least factor between two neighbours is 0.0005."""
 
 
 def circles(style: Style, figure: Figure, film: Film, name: str) -> Layer:
     """The incircle, and from it a chain of ever smaller discs into each corner."""
-    own, corners = cast(Circles, style), figure.mesh.corners
-    incircles = shapes_of(corners).incircles
-    radius = np.maximum(incircles[:, 2], 1e-3)
-    centres = corners[:, 0] + incircles[:, :2]
-    found = [(np.arange(len(radius)), centres, radius)]
-    for corner in range(3):
-        away = corners[:, corner] - centres
-        reach = np.maximum(np.hypot(away[:, 0], away[:, 1]), 1e-6)
-        sine = np.minimum(radius / reach, 0.999)
-        factor, size = (1.0 - sine) / (1.0 + sine), np.ones_like(sine)
-        for _ in range(MOST):
-            size = size * factor
-            kept = np.flatnonzero(radius * size >= own.smallest)
-            if len(kept) == 0:
-                break
-            places = centres[kept] + (1.0 - size[kept])[:, None] * away[kept]
-            found.append((kept, places, radius[kept] * size[kept]))
-    triangles, places, radii = (np.concatenate(part) for part in zip(*found, strict=True))
-    radii = radii - 0.5 * own.gap
-    order = np.argsort(triangles, kind="stable")
-    order = order[radii[order] > 0.0]
-    numbers = rounded(np.column_stack([places, radii])[order], film.options.svg_precision)
+    discs = packed(cast(Circles, style), figure.mesh.corners)
+    numbers = rounded(np.column_stack([discs.places, discs.radii]), film.options.svg_precision)
     shown = hexes(figure.colors)
-    fills = [shown[triangle] for triangle in triangles[order].tolist()]
+    fills = [shown[triangle] for triangle in discs.triangles.tolist()]
     rows = lines_of('cx="%.9g" cy="%.9g" r="%.9g"', numbers)
     return Layer(elements('<circle %s fill="%s"/>', rows, fills), [])
 

@@ -65,7 +65,7 @@ class Svg(Format):
         film = self.film
         # ids are those of a still in the first frame, and have its number in each later one
         begin = f"frame{figure.index}-" if self._frames else ""
-        names = [begin + name for name in names_of(film)]
+        names = [begin + name for name in film.names]
         named = list(zip(film.styles, names, strict=True))
         layers = [layer_of(style, figure, film, name) for style, name in named]
         shown: list[str] = []
@@ -103,15 +103,6 @@ class Svg(Format):
         return [*lines, "</svg>"]
 
 
-def names_of(film: Film) -> list[str]:
-    """A name for each layer: that of its style, and how often it was there already."""
-    styles = [STYLES.name_of(type(style)) for style in film.styles]
-    again = [styles[:number].count(name) for number, name in enumerate(styles)]
-    return [
-        f"{name}{times + 1}" if times else name for name, times in zip(styles, again, strict=True)
-    ]
-
-
 def _head(film: Film, first: int, last: int) -> list[str]:
     """What a document of these frames begins with."""
     width, height = _sides(film)
@@ -143,7 +134,7 @@ def _layer_begin(name: str, more: str) -> str:
 def _sides(film: Film) -> tuple[str, str]:
     """Width and height: pixels, or millimetres on paper."""
     width, height = film.framing.canvas
-    on_paper = film.options.svg_mm
+    on_paper = film.options.mm
     if on_paper == 0.0:
         return str(width), str(height)
     return f"{on_paper:.6g}mm", f"{on_paper * height / width:.6g}mm"

@@ -3,11 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
+from stages.exchange.plane.areas import areas_of
 from stages.exchange.svg.outlines import Trapped, outlines_of
-from stages.mesh import Mesh, next_corner
+from stages.mesh import Mesh
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,60 +28,8 @@ def merged_outlines(mesh: Mesh, colors: np.ndarray) -> Merged:
         mesh: The triangles.
         colors: Their colours, [T, 3] uint8.
     """
-    shapes = _shapes(mesh, colors)
-    twins = mesh.twins
-    own = np.repeat(shapes, 3)
-    is_border = (twins < 0) | (own[twins] != own)
-    loops, counts = _loops(mesh, is_border, own)
-    line_shapes = own[loops[np.cumsum(counts) - counts]]
-    ends = np.cumsum(np.bincount(line_shapes, minlength=shapes.max() + 1)).tolist()
-    _, firsts = np.unique(shapes, return_index=True)
+    areas = areas_of(mesh, colors)
+    ends = np.cumsum(np.bincount(areas.loop_shapes)).tolist()
+    _, firsts = np.unique(areas.shapes, return_index=True)
     spans = list(zip([0, *ends[:-1]], ends, strict=True))
-    return Merged(outlines_of(mesh, loops, counts, shapes), spans, firsts)
-
-
-def _shapes(mesh: Mesh, colors: np.ndarray) -> np.ndarray:
-    """A number for each triangle's shape, in the order of their first triangles, [T]."""
-    values = colors.astype(np.int64) @ np.array([1 << 16, 1 << 8, 1])
-    edges = mesh.edge_half_edges
-    edges = edges[mesh.twins[edges] >= 0]
-    one, other = edges // 3, mesh.twins[edges] // 3
-    same = values[one] == values[other]
-    count = mesh.triangle_count
-    joins = (np.ones(same.sum(), dtype=bool), (one[same], other[same]))
-    _, labels = connected_components(coo_array(joins, shape=(count, count)), directed=False)
-    _, firsts, numbers = np.unique(labels, return_index=True, return_inverse=True)
-    ranks = np.empty(len(firsts), np.int64)
-    ranks[np.argsort(firsts)] = np.arange(len(firsts))
-    return np.asarray(ranks[numbers])
-
-
-def _loops(mesh: Mesh, is_border: np.ndarray, own: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Half-edges along borders, loop by loop and shape by shape, and the length of each loop.
-
-    Args:
-        mesh: The triangles.
-        is_border: Which half-edges part two shapes, [3T] bool.
-        own: The shape of each, [3T].
-    """
-    starts = np.flatnonzero(is_border)
-    following = next_corner(starts)
-    while True:  # on around the vertex, through the shape, up to its next border
-        inside = ~is_border[following]
-        if not inside.any():
-            break
-        following[inside] = next_corner(mesh.twins[following[inside]])
-    ahead = dict(zip(starts.tolist(), following.tolist(), strict=True))
-    starts = starts[np.argsort(own[starts], kind="stable")].tolist()
-    seen = (~is_border).tolist()
-    loops: list[int] = []
-    counts: list[int] = []
-    for start in starts:
-        place, before = start, len(loops)
-        while not seen[place]:
-            seen[place] = True
-            loops.append(place)
-            place = ahead[place]
-        if len(loops) > before:
-            counts.append(len(loops) - before)
-    return np.array(loops), np.array(counts)
+    return Merged(outlines_of(mesh, areas.loops, areas.counts, areas.shapes), spans, firsts)

@@ -43,12 +43,23 @@ def path_data(points: np.ndarray, counts: np.ndarray, precision: int) -> list[st
         counts: Corners of each, [L].
         precision: Decimals.
     """
-    return filled([_closed(count) for count in counts.tolist()], rounded(points, precision))
+    return filled([_open(count) + "z" for count in counts.tolist()], rounded(points, precision))
+
+
+def open_lines(points: np.ndarray, counts: np.ndarray, precision: int) -> list[str]:
+    """Open lines as path data.
+
+    Args:
+        points: Those of all [px], [P, 2].
+        counts: Points of each, [L].
+        precision: Decimals.
+    """
+    return filled([_open(count) for count in counts.tolist()], rounded(points, precision))
 
 
 @cache
-def _closed(count: int) -> str:
-    return "M%.9g %.9gL" + " ".join(["%.9g %.9g"] * (count - 1)) + "z"
+def _open(count: int) -> str:
+    return "M%.9g %.9gL" + " ".join(["%.9g %.9g"] * (count - 1))
 
 
 def hexes(colors: np.ndarray) -> list[str]:

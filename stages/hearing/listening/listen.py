@@ -7,6 +7,7 @@ import numpy as np
 
 from stages.hearing.formats.json_form import as_json, from_json
 from stages.hearing.heard import USUAL_METER, Heard, usual_bpm
+from stages.hearing.listening.attacks import set_in
 from stages.hearing.listening.bars import downbeats_of
 from stages.hearing.listening.beats import beats_of
 from stages.hearing.listening.envelopes import SILENCE, envelopes_of
@@ -77,13 +78,13 @@ def heard_in(spectrum: Spectrum, bpm: float | None, meter: int) -> tuple[Heard, 
         return _steady(heard, bpm), ("it is silent",)
     strength = strength_of(spectrum)
     beats = _beats(spectrum, strength, bpm)
-    times = np.maximum((beats + LATE) / FRAMES, 0)
+    times = set_in(spectrum, np.maximum((beats + LATE) / FRAMES, 0))
     heard = Heard(
         spectrum.duration,
         usual_bpm(times),
         times,
         times[downbeats_of(spectrum, strength, beats, meter)],
-        np.unique(np.maximum((onsets_of(strength) + LATE) / FRAMES, 0)),
+        np.unique(set_in(spectrum, np.maximum((onsets_of(strength) + LATE) / FRAMES, 0))),
         envelopes,
         meter=meter,
     )

@@ -12,6 +12,10 @@ HOP = 240
 """Samples from one spectrum to the next."""
 FRAMES = RATE / HOP
 """Spectra a second."""
+STEP = 60
+"""Samples over which power is summed where moments count: 2.5 ms."""
+STEPS = RATE / STEP
+"""Such steps a second."""
 SIZE = 1024
 """Samples of a spectrum: 43 ms."""
 LONG_SIZE, LONG_HOP = 8192, 2400
@@ -38,6 +42,9 @@ class Spectrum:
     """Middle of the spectrum [Hz], [N] float32; 0 in silence."""
     tones: np.ndarray
     """Magnitudes of the tones, [M, T] float32; row k is centred at k * LONG_HOP / RATE."""
+    powers: np.ndarray
+    """Mean squares of the samples, and of how they change, [P, 2] float32; row k is from k / STEPS
+    to (k + 1) / STEPS."""
     duration: float
     """How long the sound is [s]."""
 
@@ -54,16 +61,31 @@ def spectrum_of(pieces: Iterable[np.ndarray]) -> Spectrum:
     short, long = _Windows(SIZE, HOP), _Windows(LONG_SIZE, LONG_HOP)
     rows: list[tuple[np.ndarray, ...]] = []
     tones: list[np.ndarray] = []
+    powers: list[np.ndarray] = []
+    rest = np.zeros(1, np.float32)
     count = 0
     for samples in _joined(pieces):
         count += len(samples)
+        rest = np.concatenate([rest, samples])
+        powers.append(_powers_of(rest))
+        rest = rest[len(powers[-1]) * STEP :]
         rows += [_row_of(windows, edges) for windows in short.add(samples)]
         tones += [_tones_of(windows) for windows in long.add(samples)]
     rows += [_row_of(windows, edges) for windows in short.finish()]
     tones += [_tones_of(windows) for windows in long.finish()]
     bands, rms, peak, centroid = (np.concatenate(part) for part in zip(*rows, strict=True))
     middles = np.sqrt(edges[:-1] * np.maximum(edges[:-1], edges[1:] - 1)) * (RATE / SIZE)
-    return Spectrum(bands, middles, rms, peak, centroid, np.concatenate(tones), count / RATE)
+    powers.append(_powers_of(np.pad(rest, (0, STEP))))
+    return Spectrum(
+        bands,
+        middles,
+        rms,
+        peak,
+        centroid,
+        np.concatenate(tones),
+        np.concatenate(powers),
+        count / RATE,
+    )
 
 
 def _joined(pieces: Iterable[np.ndarray]) -> Iterator[np.ndarray]:
@@ -123,6 +145,13 @@ def _row_of(windows: tuple[np.ndarray, np.ndarray], edges: np.ndarray) -> tuple[
     centroid = (size * pitch).sum(axis=1) / np.maximum(total, 1e-6)
     peak = np.abs(middle).max(axis=1)
     return bands, rms, peak, np.where(total > 1e-4, centroid, 0).astype(np.float32)
+
+
+def _powers_of(samples: np.ndarray) -> np.ndarray:
+    """Mean squares of whole steps and of how they change; the first sample is the one before."""
+    whole = (len(samples) - 1) // STEP * STEP
+    both = np.stack([samples[1 : whole + 1], np.diff(samples[: whole + 1])], axis=1)
+    return np.square(both).reshape(-1, STEP, 2).mean(axis=1)
 
 
 def _tones_of(windows: tuple[np.ndarray, np.ndarray]) -> np.ndarray:

@@ -72,7 +72,7 @@ def true_place(target: Path) -> Path:
     Args:
         target: Its name.
     """
-    return Path(os.path.realpath(target)) if target.is_symlink() else target
+    return Path(os.path.realpath(target)) if os.path.islink(target) else target
 
 
 def refuse_special(target: Path) -> None:

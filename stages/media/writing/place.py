@@ -19,9 +19,16 @@ def check_name(path: Path) -> None:
         path: The file to be.
 
     Raises:
-        OutputError: If its folder is not there, or something stands there that is no file.
+        OutputError: If no file can have its name, its folder is not there, or something else than
+            a file stands there.
     """
     place = true_place(path)
+    try:
+        os.lstat(place)
+    except (FileNotFoundError, NotADirectoryError):
+        pass
+    except (OSError, ValueError) as error:  # a name that no file can have
+        raise output_error(path, error) from error
     if not place.parent.is_dir():
         raise OutputError(path, f"there is no folder {place.parent}", "create it first")
     if place.is_dir():

@@ -10,7 +10,7 @@ from functools import cache
 
 import numpy as np
 
-from stages.exchange.svg.inks import LUMA, Inks
+from stages.exchange.plane.inks import LUMA, Inks
 from warp_kernels.scene.places import hashes_of
 from warp_kernels.scene.stroke_lay import Lay
 from warp_kernels.scene.texels import Texels

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stages.exchange.svg.tones import turned
+from stages.exchange.plane.tones import turned
 from warp_kernels.scene.stroke_lay import Lay
 
 ROUNDS = 24

@@ -1,0 +1,1 @@
+"""How other programs show what is written as shapes."""

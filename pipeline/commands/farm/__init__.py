@@ -1,0 +1,1 @@
+"""`trimotion plan` and `trimotion join`: a film in parts, and whole again."""

@@ -1,0 +1,1 @@
+"""What is worked on: the track, its source, the frames that are being edited."""

@@ -1,0 +1,129 @@
+import { Connection } from "./net/connection.js";
+import { fillPanel } from "./panel/panel.js";
+import { fillRail } from "./panel/rail.js";
+import { Stage } from "./stage.js";
+import { Keyboard } from "./tools/keyboard.js";
+import { fillHelp } from "./tools/keys.js";
+import { NAMES, planned } from "./tools/plans.js";
+import { Pointer } from "./tools/pointer.js";
+import { TOOLS } from "./tools/tools.js";
+
+/**
+ * @template {HTMLElement} T
+ * @param {string} id
+ * @returns {T}
+ */
+const element = (id) => /** @type {T} */ (document.getElementById(id));
+
+/** How long a message stays [ms]. */
+const STAYS = 6000;
+
+let toastTimer = 0;
+
+/**
+ * Show one line.
+ * @param {string} text
+ * @param {boolean} [isNote]
+ */
+function toast(text, isNote = false) {
+  const box = element("toast");
+  box.textContent = text;
+  box.classList.toggle("note", isNote);
+  box.hidden = false;
+  clearTimeout(toastTimer);
+  toastTimer = setTimeout(() => (box.hidden = true), STAYS);
+}
+
+/** @param {Stage} stage */
+function tellState(stage) {
+  const { state } = stage;
+  const edits = state.edits === 1 ? "1 edit" : `${state.edits} edits`;
+  element("saved").textContent = state.edits ? `${edits}, all saved` : "no edits yet";
+  /** @type {HTMLButtonElement} */ (element("undo")).disabled = !state.canUndo;
+  /** @type {HTMLButtonElement} */ (element("redo")).disabled = !state.canRedo;
+}
+
+/** @param {Stage} stage */
+function tellHint(stage) {
+  const picked = stage.picked();
+  const tool = TOOLS.find((one) => one.name === stage.tool);
+  let text = tool?.hint ?? "";
+  if (stage.tool === "edit" && picked) {
+    const left = NAMES[planned(picked, "left", stage.shift)];
+    const right = NAMES[planned(picked, "right", stage.shift)];
+    text = [left && `Left: ${left}`, right && `Right: ${right}`].filter(Boolean).join(" · ");
+    if (picked.kind === "vertex") text = `Drag: move the vertex · Right: ${NAMES.collapse_vertex}`;
+  }
+  if (element("hint").textContent !== text) element("hint").textContent = text;
+}
+
+/** @param {Stage} stage */
+function tellFacts(stage) {
+  const { mesh, pointer } = stage;
+  if (!mesh) return;
+  const where = pointer ? `${pointer.x.toFixed(1)}, ${pointer.y.toFixed(1)} px   ` : "";
+  element("facts").textContent = `${where}${mesh.triangleCount} triangles   rmse ${mesh.rmse.toFixed(2)}`;
+}
+
+/** Start. */
+function main() {
+  let isLost = false;
+  const connection = new Connection({
+    tell: (words) => (words.tell === "state" ? stage.setState(words) : toast(words.text)),
+    show: (packed) => {
+      stage.show(packed);
+      if (packed.head.kind === "drawn") element("loading").hidden = true;
+    },
+    lost: () => {
+      isLost = true;
+      const edits = stage.state.number;
+      element("lost").hidden = false;
+      element("lost").children[1].textContent = edits
+        ? `What you see is the job after edit ${edits}; all up to it is saved. Looking for the program again…`
+        : "Looking for the program again…";
+    },
+    found: () => begin(isLost),
+  });
+  const stage = new Stage(element("stage"), element("overlay"), connection, {
+    problem: toast,
+    say: (text) => toast(text, true),
+  });
+
+  /** @param {boolean} isAgain */
+  async function begin(isAgain) {
+    element("lost").hidden = true;
+    isLost = false;
+    const { facts, state } = await connection.ask("hello");
+    document.title = `${facts.name} · trimotion`;
+    element("name").textContent = facts.name;
+    stage.frame = isAgain ? stage.frame : facts.frames[0];
+    stage.setSize(facts.width, facts.height);
+    stage.setState(state);
+    element("where").textContent = facts.frames.length > 1 ? `frame ${stage.frame}` : `${facts.width} × ${facts.height}`;
+    await connection.ask("look", { frame: stage.frame });
+    await stage.renewCommands();
+  }
+
+  fillRail(element("tools"), stage);
+  fillPanel(element("panel"), stage);
+  fillHelp(element("keys"));
+  new Pointer(stage);
+  new Keyboard(stage, element("keys"));
+  element("undo").addEventListener("click", () => stage.turn("undo"));
+  element("redo").addEventListener("click", () => stage.turn("redo"));
+  element("help").addEventListener("click", () => /** @type {HTMLDialogElement} */ (element("keys")).showModal());
+  stage.watch(() => tellState(stage));
+  const told = () => {
+    tellHint(stage);
+    tellFacts(stage);
+    requestAnimationFrame(told);
+  };
+  told();
+  Object.assign(globalThis, { trimotion: stage }); // for whoever looks into it, tests among them
+}
+
+try {
+  main();
+} catch (error) {
+  element("loading").textContent = /** @type {Error} */ (error).message;
+}

@@ -1,0 +1,345 @@
+import { Mesh } from "./mesh/mesh.js";
+import { pick } from "./mesh/pick.js";
+import { editOf, planned } from "./tools/plans.js";
+import { Camera } from "./view/camera.js";
+import { Overlay } from "./view/overlay.js";
+import { Painter } from "./view/painter.js";
+
+/**
+ * @typedef {{x: number, y: number}} Point
+ * @typedef {{radius: number, count: number, spread: string}} Brush
+ * @typedef {{number: number, edits: number, edited: number[], canUndo: boolean, canRedo: boolean}} State
+ */
+
+/** How long the pointer rests before the brush shows what it would do [ms]. */
+const REST = 40;
+/** Radii of the brush [px of the picture]. */
+const RADII = [3, 400];
+
+/** What is on the screen, and what a hand does to it. */
+export class Stage {
+  /**
+   * @param {HTMLCanvasElement} canvas
+   * @param {HTMLCanvasElement} overlay
+   * @param {import("./net/connection.js").Connection} connection
+   * @param {{problem: (text: string) => void, say: (text: string) => void}} told
+   */
+  constructor(canvas, overlay, connection, told) {
+    this.canvas = canvas;
+    this.connection = connection;
+    this.told = told;
+    this.painter = new Painter(canvas);
+    this.overlay = new Overlay(overlay);
+    this.camera = new Camera();
+    this.size = { width: 1, height: 1 };
+    this.isFitted = false;
+    this.frame = 0;
+    this.tool = "edit";
+    /** @type {"all" | "vertex" | "edge" | "face"} */
+    this.mode = "all";
+    this.opacities = { picture: 1, drawn: 1, mesh: 0.6 };
+    this.hiddenMesh = 0.6;
+    /** @type {Brush} */
+    this.brush = { radius: 40, count: 10, spread: "uniform" };
+    /** @type {State} */
+    this.state = { number: 0, edits: 0, edited: [], canUndo: false, canRedo: false };
+    /** @type {Mesh | null} */
+    this.mesh = null;
+    /** @type {Point | null} */
+    this.pointer = null;
+    this.isByKeys = false;
+    this.shift = false;
+    /** @type {{vertex: number, from: Point, to: Point} | null} */
+    this.moving = null;
+    /** @type {Point[]} */
+    this.polygon = [];
+    /** @type {{fresh: Point[], gone: Point[], removes: boolean} | null} */
+    this.ghost = null;
+    this.ghostTimer = 0;
+    this.isGhostAsked = false;
+    this.edits = Promise.resolve();
+    /** @type {(() => void)[]} */
+    this.watchers = [];
+    /** @type {((lines: string[]) => void)[]} */
+    this.commandWatchers = [];
+    this.isDirty = false;
+    new ResizeObserver(() => this.fitOnce()).observe(canvas);
+  }
+
+  /** @param {() => void} watcher told of every change of what is chosen */
+  watch(watcher) {
+    this.watchers.push(watcher);
+  }
+
+  /** @param {(lines: string[]) => void} watcher */
+  watchCommands(watcher) {
+    this.commandWatchers.push(watcher);
+  }
+
+  changed() {
+    for (const watcher of this.watchers) watcher();
+    this.repaint();
+  }
+
+  async renewCommands() {
+    const { lines } = await this.connection.ask("commands");
+    for (const watcher of this.commandWatchers) watcher(lines);
+  }
+
+  /** @param {string} tool */
+  setTool(tool) {
+    this.letGo();
+    this.tool = tool;
+    this.changed();
+    this.hover();
+  }
+
+  /** @param {"all" | "vertex" | "edge" | "face"} mode */
+  setMode(mode) {
+    this.mode = this.mode === mode ? "all" : mode;
+    this.changed();
+  }
+
+  /**
+   * @param {"picture" | "drawn" | "mesh"} layer
+   * @param {number} value
+   */
+  setOpacity(layer, value) {
+    this.opacities[layer] = value;
+    this.changed();
+  }
+
+  toggleMesh() {
+    if (this.opacities.mesh) this.hiddenMesh = this.opacities.mesh;
+    this.setOpacity("mesh", this.opacities.mesh ? 0 : this.hiddenMesh);
+  }
+
+  /** @param {Partial<Brush>} values */
+  setBrush(values) {
+    Object.assign(this.brush, values);
+    this.brush.radius = Math.min(RADII[1], Math.max(RADII[0], this.brush.radius));
+    this.changed();
+    this.hover();
+  }
+
+  /** @param {State} state */
+  setState(state) {
+    this.state = state;
+    this.ghost = null;
+    this.changed();
+  }
+
+  /** @param {import("./net/packed.js").Packed} packed */
+  show(packed) {
+    if (packed.head.frame !== this.frame) return;
+    if (packed.head.kind === "mesh") {
+      this.mesh = new Mesh(packed);
+      this.painter.setMesh(this.mesh);
+      this.hover();
+    } else if (packed.head.kind === "picture" || packed.head.kind === "drawn") {
+      this.painter.setPicture(packed.head.kind, packed);
+    }
+    this.changed();
+  }
+
+  /**
+   * @param {number} width
+   * @param {number} height
+   */
+  setSize(width, height) {
+    this.size = { width, height };
+    this.fitOnce();
+  }
+
+  fitOnce() {
+    if (!this.isFitted && this.size.width > 1 && this.canvas.clientWidth) {
+      this.fit();
+      this.isFitted = true;
+    }
+    this.repaint();
+  }
+
+  fit() {
+    this.camera.fit(this.size.width, this.size.height, this.canvas.clientWidth, this.canvas.clientHeight);
+    this.repaint();
+  }
+
+  repaint() {
+    if (this.isDirty) return;
+    this.isDirty = true;
+    requestAnimationFrame(() => {
+      this.isDirty = false;
+      this.painter.paint(this.camera, this.size, this.opacities);
+      this.overlay.paint(this.camera, this.mesh, this.shown());
+    });
+  }
+
+  /** What is at the pointer. */
+  picked() {
+    if (!this.mesh || !this.pointer) return null;
+    return pick(this.mesh, this.pointer, this.camera.zoom, this.mode);
+  }
+
+  /** What a left click would do, or what it is that a right one alone would. */
+  plan() {
+    const picked = this.picked();
+    if (!picked) return "";
+    if (this.tool === "pin") return this.isHeld(picked) ? "unlock" : picked.kind === "face" ? "" : "lock";
+    return planned(picked, "left", this.shift);
+  }
+
+  /** @param {import("./mesh/pick.js").Picked} picked */
+  isHeld(picked) {
+    if (picked.kind === "vertex") return Boolean(this.mesh?.held[picked.vertex]);
+    return picked.kind === "edge" && Boolean(this.mesh?.heldEdges[picked.edge]);
+  }
+
+  /** @returns {import("./view/overlay.js").Shown} */
+  shown() {
+    const isPicking = this.tool === "edit" || this.tool === "pin";
+    const { ghost, pointer } = this;
+    const brush = this.tool === "brush" && pointer
+      ? { at: pointer, radius: this.brush.radius, fresh: ghost?.fresh ?? [], gone: ghost?.gone ?? [], removes: this.shift }
+      : null;
+    return {
+      picked: isPicking ? this.picked() : null,
+      plan: this.plan(),
+      brush,
+      moving: this.moving,
+      polygon: this.polygon,
+      cursor: this.isByKeys ? pointer : null,
+    };
+  }
+
+  /** The pointer has moved, or what lies under it has changed. */
+  hover() {
+    this.ghost = null;
+    clearTimeout(this.ghostTimer);
+    if (this.tool === "brush" && this.pointer) this.ghostTimer = setTimeout(() => this.askGhost(), REST);
+    this.repaint();
+  }
+
+  async askGhost() {
+    if (this.isGhostAsked || !this.pointer || !this.connection.isOpen) return;
+    const at = this.pointer;
+    const removes = this.shift;
+    this.isGhostAsked = true;
+    try {
+      const { fresh, gone } = await this.connection.ask("ghost", { edits: [this.stroke(at, removes)] });
+      const points = (/** @type {number[][]} */ rows) => rows.map(([x, y]) => ({ x, y }));
+      if (this.pointer === at) this.ghost = { fresh: points(fresh), gone: points(gone), removes };
+      this.repaint();
+    } catch {
+      this.ghost = null; // where nothing can be put nothing is shown
+    } finally {
+      this.isGhostAsked = false;
+    }
+  }
+
+  /**
+   * A touch of the brush.
+   * @param {Point} at
+   * @param {boolean} removes
+   * @returns {import("./tools/plans.js").Edit}
+   */
+  stroke(at, removes) {
+    const kind = removes ? "remove" : "insert";
+    // the same chance until the next edit: what the preview shows is what comes
+    return { edit: kind, frame: this.frame, at: [at.x, at.y], ...this.brush, seed: this.state.number };
+  }
+
+  /**
+   * Make edits, one after the other.
+   * @param {...import("./tools/plans.js").Edit} edits
+   */
+  make(...edits) {
+    const framed = edits.map(({ edit, ...rest }) => ({ edit, frame: this.frame, ...rest }));
+    this.edits = this.edits.then(async () => {
+      try {
+        const { number } = await this.connection.ask("edit", { edits: framed, after: this.state.number });
+        this.state.number = number;
+      } catch (error) {
+        this.told.problem(/** @type {Error} */ (error).message);
+      }
+    });
+    return this.edits;
+  }
+
+  /** @param {"undo" | "redo"} what */
+  turn(what) {
+    this.edits = this.edits.then(async () => {
+      try {
+        const { frame } = await this.connection.ask(what);
+        this.told.say(frame === null ? `There is nothing to ${what}` : `${what === "undo" ? "Undone" : "Done again"}, frame ${frame}`);
+      } catch (error) {
+        this.told.problem(/** @type {Error} */ (error).message);
+      }
+    });
+    return this.edits;
+  }
+
+  /**
+   * Do what a click does.
+   * @param {"left" | "right"} button
+   */
+  click(button) {
+    const picked = this.picked();
+    if (!this.mesh || !this.pointer) return;
+    if (this.tool === "brush") {
+      this.make(this.stroke(this.pointer, button === "right" || this.shift));
+    } else if (picked && this.tool === "pin") {
+      const plan = button === "right" || this.isHeld(picked) ? "unlock" : "lock";
+      if (picked.kind !== "face") this.make(editOf(this.mesh, picked, plan));
+    } else if (picked && this.tool === "edit") {
+      const plan = planned(picked, button, this.shift);
+      if (plan && plan !== "move_vertex") this.make(editOf(this.mesh, picked, plan));
+    }
+  }
+
+  /**
+   * Do something to the nearest of a kind.
+   * @param {"vertex" | "edge"} kind
+   * @param {string} plan
+   */
+  act(kind, plan) {
+    if (!this.mesh || !this.pointer) return;
+    const picked = pick(this.mesh, this.pointer, this.camera.zoom, kind);
+    if (picked) this.make(editOf(this.mesh, picked, plan));
+  }
+
+  /** Take up the vertex at the pointer. */
+  grab() {
+    if (!this.mesh || !this.pointer) return;
+    const picked = pick(this.mesh, this.pointer, this.camera.zoom, "vertex");
+    if (picked?.kind === "vertex") this.moving = { vertex: picked.vertex, from: picked.at, to: picked.at };
+    this.repaint();
+  }
+
+  /** Put the vertex that was taken up where it is now. */
+  drop() {
+    const { moving } = this;
+    this.moving = null;
+    if (moving && (moving.to.x !== moving.from.x || moving.to.y !== moving.from.y)) {
+      const { from, to } = moving;
+      this.make({ edit: "move_vertex", at: [from.x, from.y], to: [to.x, to.y] });
+    }
+    this.repaint();
+  }
+
+  /** Let go of what was begun. */
+  letGo() {
+    this.moving = null;
+    this.polygon = [];
+    this.repaint();
+  }
+
+  /** Triangulate the region that was drawn. */
+  closeRegion() {
+    const polygon = this.polygon.map(({ x, y }) => [x, y]);
+    this.polygon = [];
+    if (polygon.length > 2) {
+      this.make(/** @type {any} */ ({ edit: "retriangulate", polygon, count: this.brush.count, seed: this.state.number }));
+    }
+    this.repaint();
+  }
+}

@@ -1,0 +1,170 @@
+import { DOTS, LINES, PICTURE } from "./shaders.js";
+
+/**
+ * @typedef {import("../mesh/mesh.js").Mesh} Mesh
+ * @typedef {{picture: number, drawn: number, mesh: number}} Opacities
+ * @typedef {{program: WebGLProgram, at: (name: string) => WebGLUniformLocation | null}} Program
+ */
+
+/** Draws the layers of the stage with WebGL. */
+export class Painter {
+  /** @param {HTMLCanvasElement} canvas */
+  constructor(canvas) {
+    const gl = canvas.getContext("webgl2", { alpha: true, antialias: false, premultipliedAlpha: false });
+    if (!gl) throw new Error("this browser has no WebGL 2; try a newer one, or another machine");
+    this.canvas = canvas;
+    this.gl = gl;
+    this.pictures = program(gl, PICTURE);
+    this.lines = program(gl, LINES);
+    this.dots = program(gl, DOTS);
+    /** @type {Record<string, WebGLTexture>} */
+    this.textures = {};
+    this.edges = 0;
+    this.vertices = 0;
+    this.lineArray = gl.createVertexArray();
+    this.dotArray = gl.createVertexArray();
+    this.empty = gl.createVertexArray();
+    this.buffers = { ends: gl.createBuffer(), held: gl.createBuffer(), at: gl.createBuffer(), heldAt: gl.createBuffer() };
+    gl.enable(gl.BLEND);
+    gl.blendFuncSeparate(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA, gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
+  }
+
+  /**
+   * Take in a picture.
+   * @param {"picture" | "drawn"} name
+   * @param {import("../net/packed.js").Packed} packed
+   */
+  setPicture(name, { head, arrays }) {
+    const { gl } = this;
+    const texture = (this.textures[name] ??= /** @type {WebGLTexture} */ (gl.createTexture()));
+    const format = head.channels === 4 ? gl.RGBA : gl.RGB;
+    gl.bindTexture(gl.TEXTURE_2D, texture);
+    gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
+    gl.texImage2D(gl.TEXTURE_2D, 0, format, head.columns, head.rows, 0, format, gl.UNSIGNED_BYTE, arrays.pixels);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.LINEAR);
+  }
+
+  /** @param {Mesh} mesh */
+  setMesh(mesh) {
+    const ends = new Float32Array(4 * mesh.edgeCount);
+    for (let e = 0; e < mesh.edgeCount; e++) {
+      const [a, b] = mesh.ends(e);
+      ends.set([mesh.vertices[2 * a], mesh.vertices[2 * a + 1], mesh.vertices[2 * b], mesh.vertices[2 * b + 1]], 4 * e);
+    }
+    this.edges = mesh.edgeCount;
+    this.vertices = mesh.vertexCount;
+    const heldEdges = Float32Array.from(mesh.heldEdges);
+    this.fill(this.lineArray, this.lines, { ends: [4, ends], held: [1, heldEdges] }, this.buffers);
+    const at = { at: this.buffers.at, held: this.buffers.heldAt };
+    const positions = Float32Array.from(mesh.vertices);
+    this.fill(this.dotArray, this.dots, { at: [2, positions], held: [1, Float32Array.from(mesh.held)] }, at);
+  }
+
+  /**
+   * @param {WebGLVertexArrayObject | null} array
+   * @param {Program} used
+   * @param {Record<string, [number, Float32Array]>} values
+   * @param {Record<string, WebGLBuffer | null>} buffers
+   */
+  fill(array, used, values, buffers) {
+    const { gl } = this;
+    gl.bindVertexArray(array);
+    for (const [name, [size, data]] of Object.entries(values)) {
+      const place = gl.getAttribLocation(used.program, name);
+      gl.bindBuffer(gl.ARRAY_BUFFER, buffers[name]);
+      gl.bufferData(gl.ARRAY_BUFFER, data, gl.DYNAMIC_DRAW);
+      gl.enableVertexAttribArray(place);
+      gl.vertexAttribPointer(place, size, gl.FLOAT, false, 0, 0);
+      gl.vertexAttribDivisor(place, 1);
+    }
+    gl.bindVertexArray(null);
+  }
+
+  /**
+   * Draw everything.
+   * @param {import("./camera.js").Camera} camera
+   * @param {{width: number, height: number}} size of the picture
+   * @param {Opacities} opacities
+   */
+  paint(camera, size, opacities) {
+    const { gl, canvas } = this;
+    const scale = devicePixelRatio || 1;
+    const [across, down] = [Math.round(canvas.clientWidth * scale), Math.round(canvas.clientHeight * scale)];
+    if (canvas.width !== across || canvas.height !== down) [canvas.width, canvas.height] = [across, down];
+    gl.viewport(0, 0, across, down);
+    gl.clearColor(0, 0, 0, 0);
+    gl.clear(gl.COLOR_BUFFER_BIT);
+    const view = [camera.x * scale, camera.y * scale, camera.zoom * scale];
+    for (const name of /** @type {const} */ (["picture", "drawn"])) {
+      if (this.textures[name] && opacities[name] > 0) this.paintPicture(name, view, size, opacities[name]);
+    }
+    if (opacities.mesh > 0 && this.edges) this.paintMesh(view, scale, camera.zoom, opacities.mesh);
+  }
+
+  /**
+   * @param {string} name
+   * @param {number[]} view
+   * @param {{width: number, height: number}} size
+   * @param {number} opacity
+   */
+  paintPicture(name, view, size, opacity) {
+    const { gl, pictures } = this;
+    this.use(pictures, view, opacity);
+    gl.uniform2f(pictures.at("size"), size.width, size.height);
+    gl.bindTexture(gl.TEXTURE_2D, this.textures[name]);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, view[2] > 4 ? gl.NEAREST : gl.LINEAR);
+    gl.bindVertexArray(this.empty);
+    gl.drawArrays(gl.TRIANGLE_STRIP, 0, 4);
+  }
+
+  /**
+   * @param {number[]} view
+   * @param {number} scale
+   * @param {number} zoom
+   * @param {number} opacity
+   */
+  paintMesh(view, scale, zoom, opacity) {
+    const { gl, lines, dots } = this;
+    this.use(lines, view, opacity);
+    gl.uniform1f(lines.at("width"), scale * Math.min(1.6, 0.8 + 0.2 * zoom));
+    gl.bindVertexArray(this.lineArray);
+    gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, this.edges);
+    this.use(dots, view, opacity);
+    gl.uniform1f(dots.at("radius"), scale * Math.min(3.2, 1.1 + 0.7 * zoom));
+    gl.bindVertexArray(this.dotArray);
+    gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, this.vertices);
+  }
+
+  /**
+   * @param {Program} used
+   * @param {number[]} view
+   * @param {number} opacity
+   */
+  use(used, view, opacity) {
+    const { gl } = this;
+    gl.useProgram(used.program);
+    gl.uniform3f(used.at("camera"), view[0], view[1], view[2]);
+    gl.uniform2f(used.at("screen"), gl.drawingBufferWidth, gl.drawingBufferHeight);
+    gl.uniform1f(used.at("opacity"), opacity);
+  }
+}
+
+/**
+ * @param {WebGL2RenderingContext} gl
+ * @param {{vertex: string, fragment: string}} source
+ * @returns {Program}
+ */
+function program(gl, source) {
+  const made = gl.createProgram();
+  for (const [kind, text] of /** @type {const} */ ([[gl.VERTEX_SHADER, source.vertex], [gl.FRAGMENT_SHADER, source.fragment]])) {
+    const shader = /** @type {WebGLShader} */ (gl.createShader(kind));
+    gl.shaderSource(shader, text);
+    gl.compileShader(shader);
+    if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) throw new Error(gl.getShaderInfoLog(shader) ?? "");
+    gl.attachShader(made, shader);
+  }
+  gl.linkProgram(made);
+  return { program: made, at: (name) => gl.getUniformLocation(made, name) };
+}

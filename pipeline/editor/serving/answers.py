@@ -1,0 +1,116 @@
+"""What a window may ask for, by name."""
+
+from collections.abc import Awaitable, Callable
+from typing import TYPE_CHECKING, Any
+
+from pipeline.edit_log.json_lines import log_of
+from pipeline.editor.bench.command_lines import render_line, solve_line
+from pipeline.editor.bench.easel import look_of
+from pipeline.editor.wire.asked import Asked, AskError
+from stages.hand import Edit
+
+if TYPE_CHECKING:
+    from pipeline.editor.serving.window import Window
+
+Reply = dict[str, Any]
+MOST_EDITS = 1_000
+"""Edits of one message."""
+MOST_STYLES = 16
+"""Styles over one another."""
+
+
+async def hello(window: "Window", asked: Asked) -> Reply:
+    """All that does not change, and the state."""
+    studio = window.studio
+    state = await studio.do(studio.session.state)
+    return {"facts": await studio.do(studio.facts), "state": state}
+
+
+async def look_at(window: "Window", asked: Asked) -> Reply:
+    """Show a frame."""
+    frame = asked.whole("frame")
+    await window.studio.do(window.studio.session.picture, frame)
+    window.frame = frame
+    await window.show_picture()
+    await window.show_mesh()
+    window.want_drawn()
+    return {}
+
+
+async def style(window: "Window", asked: Asked) -> Reply:
+    """Draw in a stack of styles."""
+    specs = asked.items("styles")
+    if len(specs) > MOST_STYLES or not all(isinstance(spec, str) for spec in specs):
+        raise AskError(f"style: it needs styles, up to {MOST_STYLES} texts")
+    window.look = await window.studio.do(look_of, specs)
+    window.styles = specs
+    window.want_drawn()
+    return {}
+
+
+async def edit(window: "Window", asked: Asked) -> Reply:
+    """Make edits."""
+    session = window.studio.session
+    after = asked.whole("after") if "after" in asked.values else None
+    number = await window.studio.do(session.make, _edits(asked), after)
+    await window.studio.changed()
+    return {"number": number}
+
+
+async def ghost(window: "Window", asked: Asked) -> Reply:
+    """Where an edit would put vertices, and which would go."""
+    (edit,) = _edits(asked)[:1]
+    found = await window.studio.do(window.studio.session.ghost, edit)
+    return {"fresh": found.fresh.tolist(), "gone": found.gone.tolist()}
+
+
+async def undo(window: "Window", asked: Asked) -> Reply:
+    """Undo the last edit."""
+    return await _turned(window, await window.studio.do(window.studio.session.undo))
+
+
+async def redo(window: "Window", asked: Asked) -> Reply:
+    """Redo the edit that was undone last."""
+    return await _turned(window, await window.studio.do(window.studio.session.redo))
+
+
+async def commands(window: "Window", asked: Asked) -> Reply:
+    """What to type to make the same without the editor."""
+    session, styles = window.studio.session, window.styles
+    track = session.path.with_name(f"{session.path.stem}.edited{session.path.suffix}")
+    output = track.with_suffix(".png" if session.info.kind == "image" else ".mp4")
+    lines = [solve_line(session.path, session.options), render_line(track, output, styles)]
+    return {"lines": lines}
+
+
+async def _turned(window: "Window", edit: Edit | None) -> Reply:
+    if edit is None:
+        return {"frame": None}
+    await window.studio.changed()
+    return {"frame": edit.frame}
+
+
+def _edits(asked: Asked) -> list[Edit]:
+    """The edits of a message.
+
+    Raises:
+        AskError: If there is none, or too many.
+        MediaError: If one is none.
+    """
+    given = asked.items("edits")
+    if not 0 < len(given) <= MOST_EDITS:
+        raise AskError(f"{asked.what}: it needs edits, from 1 to {MOST_EDITS}")
+    return list(log_of(given).edits)
+
+
+ANSWERS: dict[str, Callable[["Window", Asked], Awaitable[Reply]]] = {
+    "hello": hello,
+    "look": look_at,
+    "style": style,
+    "edit": edit,
+    "ghost": ghost,
+    "commands": commands,
+    "undo": undo,
+    "redo": redo,
+}
+"""What answers."""

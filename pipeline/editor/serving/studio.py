@@ -1,0 +1,93 @@
+"""One session and the windows that look at it."""
+
+import asyncio
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
+
+from pipeline.editor.bench.session import Session
+from pipeline.editor.serving.guard import Log
+
+if TYPE_CHECKING:
+    from pipeline.editor.serving.window import Window
+
+P = ParamSpec("P")
+Result = TypeVar("Result")
+
+MOST_WINDOWS = 16
+"""Windows that may be open at once."""
+LOOK_EVERY = 0.5
+"""How often it is looked whether another program went on with the track [s]."""
+
+
+class Studio:
+    """Lets windows work on one session, one thing at a time.
+
+    Args:
+        session: What is edited; only the studio's thread touches it from now on.
+        log: Told of what goes wrong.
+    """
+
+    def __init__(self, session: Session, log: Log) -> None:
+        self.session, self.log = session, log
+        self._thread = ThreadPoolExecutor(1, "trimotion-editor")
+        self._windows: set[Window] = set()
+        self._number = session.number
+
+    @property
+    def is_full(self) -> bool:
+        """Whether no more windows are let in."""
+        return len(self._windows) >= MOST_WINDOWS
+
+    @property
+    def is_used(self) -> bool:
+        """Whether a window is open."""
+        return bool(self._windows)
+
+    def enter(self, window: "Window") -> None:
+        """A window opens."""
+        self._windows.add(window)
+
+    def leave(self, window: "Window") -> None:
+        """A window has closed."""
+        self._windows.discard(window)
+
+    async def do(self, work: Callable[P, Result], *arguments: P.args, **named: P.kwargs) -> Result:
+        """Do something with the session, after all that was asked for before.
+
+        Args:
+            work: What is called in the studio's thread.
+            arguments: What it is given.
+            named: The same.
+        """
+        loop = asyncio.get_running_loop()
+        return await loop.run_in_executor(self._thread, lambda: work(*arguments, **named))
+
+    async def changed(self) -> None:
+        """Show all windows what the job is now."""
+        state = await self.do(self.session.state)
+        self._number = state["number"]
+        for window in list(self._windows):
+            window.tell({"tell": "state", **state})
+        for window in list(self._windows):
+            await window.show_mesh()
+        for window in list(self._windows):
+            window.want_drawn()
+
+    async def watch(self) -> None:
+        """See to it that what another program does with the track is shown; never ends."""
+        while True:
+            await asyncio.sleep(LOOK_EVERY)
+            if self._windows and await self.do(lambda: self.session.number) != self._number:
+                await self.changed()
+
+    def close(self) -> None:
+        """Let what was begun end, and release the session."""
+        self._thread.submit(self.session.close).result()
+        self._thread.shutdown()
+
+    def facts(self) -> dict[str, Any]:
+        """What a window is told when it opens."""
+        from pipeline.editor.wire.facts import facts_of
+
+        return facts_of(self.session)

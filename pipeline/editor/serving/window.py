@@ -1,0 +1,150 @@
+"""One window of a browser: what it asks for in turn, and what it is told."""
+
+import asyncio
+import json
+from collections.abc import Mapping
+from contextlib import suppress
+from typing import Any
+
+from starlette.websockets import WebSocket, WebSocketDisconnect
+
+from pipeline.editor.bench.easel import look_of
+from pipeline.editor.serving.answers import ANSWERS
+from pipeline.editor.serving.guard import shown
+from pipeline.editor.serving.pace import Pace
+from pipeline.editor.serving.studio import Studio
+from pipeline.editor.wire.asked import Asked, AskError, read_asked
+from pipeline.editor.wire.packed import packed_mesh, packed_pixels
+from pipeline.options.look import Look
+from warp_kernels.errors import TrimotionError
+
+TOO_BIG, POLICY, TRY_LATER = 1009, 1008, 1013
+"""Codes with which a connection is closed."""
+
+
+class Window:
+    """A window that looks at a frame.
+
+    Args:
+        socket: Its connection, not yet accepted.
+        studio: What it works in.
+    """
+
+    def __init__(self, socket: WebSocket, studio: Studio) -> None:
+        self._socket, self.studio = socket, studio
+        self.frame = studio.session.frames[0]
+        self.look: Look = look_of(())
+        self.styles: list[str] = []
+        self._words: list[str] = []
+        self._pictures: dict[str, bytes] = {}  # the newest of each kind: who is slow misses some
+        self._news = asyncio.Event()
+        self._undrawn = asyncio.Event()
+        self._pace = Pace()
+
+    async def run(self) -> None:
+        """Serve the window until it closes."""
+        await self._socket.accept()
+        if self.studio.is_full:
+            await self._socket.close(TRY_LATER, "too many windows are open; close one")
+            return
+        self.studio.enter(self)
+        beside = [asyncio.create_task(one) for one in (self._send(), self._draw())]
+        try:
+            await self._listen()
+        except WebSocketDisconnect as gone:
+            if gone.code == TOO_BIG:
+                self.studio.log("refused a message that is too long; its window was closed")
+        finally:
+            self.studio.leave(self)
+            for task in beside:
+                task.cancel()
+
+    def tell(self, words: Mapping[str, Any]) -> None:
+        """Tell something, in its turn."""
+        self._words.append(json.dumps(words))
+        self._news.set()
+
+    def show(self, kind: str, packed: bytes) -> None:
+        """Show something in place of what was of that kind.
+
+        Args:
+            kind: What it is.
+            packed: The message.
+        """
+        self._pictures[kind] = packed
+        self._news.set()
+
+    async def show_picture(self) -> None:
+        """Show the source's picture of the frame."""
+        frame = self.frame
+        picture = await self.studio.do(self.studio.session.picture, frame)
+        self.show("picture", packed_pixels({"kind": "picture", "frame": frame}, picture.pixels))
+
+    async def show_mesh(self) -> None:
+        """Show the mesh of the frame."""
+        self.show("mesh", await self.studio.do(self._mesh, self.frame))
+
+    def want_drawn(self) -> None:
+        """Have the frame drawn, soon: of what is asked for meanwhile the last counts."""
+        self._undrawn.set()
+
+    def _mesh(self, frame: int) -> bytes:
+        session = self.studio.session
+        head = {"frame": frame, "number": session.number}
+        return packed_mesh(head, session.shown(frame))
+
+    async def _draw(self) -> None:
+        """Draw whenever that is wanted."""
+        while True:
+            await self._undrawn.wait()
+            self._undrawn.clear()
+            frame = self.frame
+            try:
+                pixels = await self.studio.do(self.studio.session.drawn, frame, self.look)
+            except TrimotionError as error:
+                self.tell({"tell": "problem", "text": str(error)})
+                continue
+            self.show("drawn", packed_pixels({"kind": "drawn", "frame": frame}, pixels))
+
+    async def _send(self) -> None:
+        """Send what there is to tell and to show."""
+        with suppress(WebSocketDisconnect, RuntimeError):
+            while True:
+                await self._news.wait()
+                self._news.clear()
+                words, self._words = self._words, []
+                for text in words:
+                    await self._socket.send_text(text)
+                while self._pictures:
+                    kind = next(iter(self._pictures))
+                    await self._socket.send_bytes(self._pictures.pop(kind))
+
+    async def _listen(self) -> None:
+        """Answer message after message."""
+        while True:
+            text = await self._socket.receive_text()
+            if not self._pace.is_kept():
+                self.studio.log("refused a window that sent too many messages a second")
+                await self._socket.close(POLICY, "too many messages a second")
+                return
+            try:
+                asked = read_asked(text)
+            except AskError as error:
+                self.studio.log(f"refused {error}")
+                self.tell({"re": None, "error": str(error)})
+                continue
+            await self._answer(asked)
+
+    async def _answer(self, asked: Asked) -> None:
+        """Do what is asked for; a failure is one line in the window."""
+        answer = ANSWERS.get(asked.what)
+        try:
+            if answer is None:
+                raise AskError(f"nothing is called {shown(asked.what)!r}")
+            reply = await answer(self, asked)
+            self.tell({"re": asked.number, **reply})
+        except TrimotionError as error:
+            self.tell({"re": asked.number, "error": str(error)})
+        except Exception as error:  # a mistake of this program must not end the work of a person
+            self.studio.log(f"{shown(asked.what)}: {type(error).__name__}: {shown(str(error))}")
+            self.tell({"re": asked.number, "error": "that failed; nothing has changed"})

@@ -1,0 +1,58 @@
+"""What a window is told when it opens: the job, its frames, the styles."""
+
+from typing import Any
+
+from pipeline.editor.bench.session import Session
+from pipeline.options.members import parameters
+from pipeline.options.values import kind_of
+from warp_kernels.errors import OptionError
+from warp_kernels.styles import STYLES
+
+SAID = ("help", "unit", "range", "choices", "form")
+"""What metadata say of a parameter."""
+
+
+def facts_of(session: Session) -> dict[str, Any]:
+    """All that does not change while a job is edited.
+
+    Args:
+        session: The job.
+    """
+    info = session.info
+    return {
+        "name": session.options.source.name,
+        "source": str(session.options.source),
+        "track": str(session.path),
+        "width": info.width,
+        "height": info.height,
+        "frames": session.frames,
+        "shots": session.shots,
+        "rate": None if info.average_rate is None else float(info.average_rate),
+        "model": session.easel.model.name,
+        "styles": style_facts(),
+    }
+
+
+def style_facts() -> dict[str, Any]:
+    """The styles that can be used, each with what it says of itself and of its parameters."""
+    found: dict[str, Any] = {}
+    for name in STYLES:
+        try:
+            cls: Any = STYLES[name]
+        except OptionError:
+            continue  # of a package that does not work here
+        summary = (cls.__doc__ or "").strip().partition("\n")[0]
+        told = [_parameter(field) for field in parameters(cls)]
+        found[name] = {"summary": summary, "parameters": told}
+    return found
+
+
+def _parameter(field: Any) -> dict[str, Any]:
+    """A parameter: its name, kind, default, and what its metadata say."""
+    said = {
+        key: field.metadata[key]
+        for key in ("help", "unit", "range", "choices")
+        if key in field.metadata
+    }
+    default = field.default if isinstance(field.default, str | int | float | bool) else None
+    return {"name": field.name, "kind": kind_of(field), "default": default, **said}

@@ -1,0 +1,1 @@
+"""What is handed to the machines of a farm: one job of many parts, written for its engine."""

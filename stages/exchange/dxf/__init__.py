@@ -1,0 +1,1 @@
+"""DXF: lines that cutters, engravers and CAD programs follow (extra `trimotion[dxf]`)."""

@@ -1,0 +1,1 @@
+"""USD: meshes that move in time, for film and 3D programs (extra `trimotion[usd]`)."""

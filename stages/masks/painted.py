@@ -1,0 +1,55 @@
+"""Areas of a picture as a mask."""
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from stages.masks.area import Area
+
+WHITE = 255
+
+
+def painted(areas: Iterable[Area], size: tuple[int, int]) -> np.ndarray:
+    """The pixels whose centres lie in any of some areas.
+
+    Args:
+        areas: Parts of the picture.
+        size: Its width and height [px].
+
+    Returns:
+        White there, black elsewhere, [H, W] uint8.
+    """
+    width, height = size
+    inside = np.zeros((height, width), dtype=bool)
+    for area in areas:
+        inside |= _in_polygon(area.polygon, size) if area.polygon else _in_disc(area, size)
+    return np.where(inside, WHITE, 0).astype(np.uint8)
+
+
+def _in_disc(area: Area, size: tuple[int, int]) -> np.ndarray:
+    """Pixels whose centres lie in a disc, [H, W] bool."""
+    x, y = (np.arange(side) + 0.5 - centre for side, centre in zip(size, area.at, strict=True))
+    inside: np.ndarray = x**2 + y[:, None] ** 2 <= area.radius**2
+    return inside
+
+
+def _in_polygon(polygon: tuple[tuple[float, float], ...], size: tuple[int, int]) -> np.ndarray:
+    """Pixels whose centres lie in a polygon, [H, W] bool.
+
+    In each row of pixels those do that have an odd number of its sides to their left.
+    """
+    width, height = size
+    begins = np.array(polygon)
+    ends = np.roll(begins, -1, axis=0)
+    low, high = np.minimum(begins[:, 1], ends[:, 1]), np.maximum(begins[:, 1], ends[:, 1])
+    first, beyond = (np.clip(np.ceil(y - 0.5), 0, height).astype(np.int64) for y in (low, high))
+    counts = beyond - first
+    sides = np.repeat(np.arange(len(begins)), counts)
+    rows = np.arange(counts.sum()) - np.repeat(counts.cumsum() - counts, counts) + first[sides]
+    (x0, y0), (x1, y1) = begins[sides].T, ends[sides].T
+    crossings = x0 + (rows + 0.5 - y0) * (x1 - x0) / (y1 - y0)
+    columns = np.clip(np.ceil(crossings - 0.5), 0, width).astype(np.int64)
+    switches = np.zeros((height, width + 1), dtype=np.int64)
+    np.add.at(switches, (rows, columns), 1)
+    inside: np.ndarray = switches.cumsum(axis=1)[:, :width] % 2 == 1
+    return inside

@@ -1,0 +1,302 @@
+"""The editor's page in a real browser: hands, keys, what is shown and what is saved.
+
+Where no Chromium is found these tests are skipped, unless FAIL_WITHOUT_CHROMIUM=1.
+"""
+
+import io
+import os
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import pytest
+from PIL import Image
+from playwright.sync_api import Browser, Page, expect, sync_playwright
+
+from pipeline.edit_log.journal import EditJournal
+from stages.hand import EDITS
+from tests.editing import Served, browser_path, served, write_job
+
+ARGUMENTS = ["--no-sandbox", "--enable-unsafe-swiftshader"]
+SIZE = {"width": 1000, "height": 640}
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    """A browser without a window."""
+    path = browser_path()
+    if path is None:
+        absent = "no Chromium on this machine"
+        if os.environ.get("FAIL_WITHOUT_CHROMIUM") == "1":
+            pytest.fail(f"{absent}, and FAIL_WITHOUT_CHROMIUM=1")
+        pytest.skip(absent)
+    with sync_playwright() as playwright:
+        found = playwright.chromium.launch(executable_path=path, args=ARGUMENTS)
+        yield found
+        found.close()
+
+
+@pytest.fixture(scope="module")
+def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+    """A server with a still."""
+    with served(write_job(tmp_path_factory.mktemp("job"))) as found:
+        yield found
+
+
+@pytest.fixture
+def page(browser: Browser, server: Served) -> Iterator[Page]:
+    """The page, open, with all edits of earlier tests undone; what it complains of fails."""
+    with EditJournal(server.studio.session.path) as journal:
+        journal.go_to(0)
+    page = browser.new_page(viewport=SIZE)
+    page.set_default_timeout(20_000)
+    problems: list[str] = []
+    page.on("pageerror", lambda error: problems.append(str(error)))
+    page.on("console", lambda told: problems.append(told.text) if told.type == "error" else None)
+    page.goto(server.address.url)
+    expect(page.locator("#loading")).to_be_hidden()
+    yield page
+    page.close()
+    assert problems == []
+
+
+FINDERS = {
+    "vertex": """m => {
+        for (let v = 0; v < m.vertexCount; v++) {
+            const {x, y} = m.at(v);
+            if (x > 8 && y > 8 && x < m.width - 8 && y < m.height - 8) return [x, y];
+        } }""",
+    "edge": """m => {
+        const side = (a, b, c) => (b.x-a.x)*(c.y-a.y) - (b.y-a.y)*(c.x-a.x);
+        let best = null, most = 0;
+        for (let e = 0; e < m.edgeCount; e++) {
+            const facing = m.opposite(e).map(v => m.at(v));
+            if (facing.length < 2) continue;
+            const [a, b] = m.ends(e).map(v => m.at(v)), [c, d] = facing;
+            const [one, other] = [side(c, d, a), side(c, d, b)];
+            const least = Math.min(Math.abs(one), Math.abs(other));
+            if (one * other < 0 && least > most)
+                [most, best] = [least, [(a.x + b.x) / 2, (a.y + b.y) / 2]];
+        }
+        return best; }""",
+    "face": """m => {
+        let best = null, most = 0;
+        for (let t = 0; t < m.triangleCount; t++) {
+            const [a, b, c] = m.corners(t).map(v => m.at(v));
+            const area = (b.x-a.x)*(c.y-a.y) - (b.y-a.y)*(c.x-a.x);
+            if (area > most) [most, best] = [area, [(a.x+b.x+c.x)/3, (a.y+b.y+c.y)/3]];
+        }
+        return best; }""",
+}
+"""Places of a mesh to point at, by what is there: far from everything else."""
+
+
+def place(page: Page, x: float, y: float) -> tuple[float, float]:
+    """Where a place of the picture is on the page [px]."""
+    found: list[float] = page.evaluate(
+        "([x, y]) => { const {left, top} = trimotion.canvas.getBoundingClientRect();"
+        " const at = trimotion.camera.toScreen({x, y}); return [at.x + left, at.y + top]; }",
+        [x, y],
+    )
+    return found[0], found[1]
+
+
+def find(page: Page, what: str) -> Any:
+    """A vertex inside, an edge inside that can be flipped, or a triangle, away from others."""
+    return page.evaluate(f"() => ({FINDERS[what]})(trimotion.mesh)")
+
+
+def wait_for_edits(page: Page, count: int) -> None:
+    """Wait until the page says how many edits there are."""
+    told = {0: "no edits yet", 1: "1 edit, all saved"}.get(count, f"{count} edits, all saved")
+    expect(page.locator("#saved")).to_have_text(told)
+
+
+def log_of(server: Served) -> list[str]:
+    """Kinds of the edits in force, as the track has them."""
+    with EditJournal(server.studio.session.path) as journal:
+        return [EDITS.name_of(type(edit)) for edit in journal.log.edits]
+
+
+def assert_shows_the_mesh(page: Page, server: Served) -> None:
+    """The mesh on the page is that of the session, to the bit."""
+    expected = server.studio.session.worked(0).mesh
+    page.wait_for_function(
+        "count => trimotion.mesh.triangleCount === count", arg=expected.triangle_count
+    )
+    found = page.evaluate("() => [...trimotion.mesh.vertices]")
+    assert np.array_equal(np.array(found).reshape(-1, 2), expected.vertices)
+
+
+CLICKS = [
+    ("edge", "left", [], "split_edge"),
+    ("face", "left", [], "split_triangle"),
+    ("vertex", "right", [], "collapse_vertex"),
+    ("edge", "right", [], "flip_edge"),
+    ("face", "left", ["Shift"], "turn_base_edge"),
+]
+
+
+def test_the_mouse_of_the_paper(page: Page, server: Served) -> None:
+    """Each click is one edit of the log, shown, undone and done again."""
+    for count, (what, button, modifiers, kind) in enumerate(CLICKS, start=1):
+        x, y = place(page, *find(page, what))
+        page.keyboard.down("Shift") if modifiers else None
+        page.mouse.click(x, y, button=button)
+        page.keyboard.up("Shift") if modifiers else None
+        wait_for_edits(page, count)
+        assert log_of(server)[-1] == kind
+        assert_shows_the_mesh(page, server)
+    page.keyboard.press("Control+z")
+    wait_for_edits(page, 4)
+    page.locator("#undo").click()
+    wait_for_edits(page, 3)
+    page.keyboard.press("Control+Shift+z")
+    wait_for_edits(page, 4)
+    assert log_of(server) == [kind for *_, kind in CLICKS[:4]]
+    assert_shows_the_mesh(page, server)
+
+
+def test_a_vertex_is_dragged_and_typed(page: Page, server: Served) -> None:
+    """By hand, and by G with numbers; Shift makes a tenth of the way; Esc leaves it."""
+    x, y = find(page, "vertex")
+    (left, top), (right, bottom) = place(page, x, y), place(page, x + 2, y + 1)
+    page.mouse.move(left, top)
+    page.mouse.down()
+    page.mouse.move((left + right) / 2, (top + bottom) / 2)
+    page.mouse.move(right, bottom)
+    page.mouse.up()
+    wait_for_edits(page, 1)
+    with EditJournal(server.studio.session.path) as journal:
+        (moved,) = journal.log.edits
+    assert np.allclose(np.array(moved.to) - moved.at, (2, 1), atol=1e-6)  # type: ignore[attr-defined]
+    page.keyboard.press("g")
+    page.keyboard.type("-1.5, 0.25")
+    page.keyboard.press("Enter")
+    wait_for_edits(page, 2)
+    with EditJournal(server.studio.session.path) as journal:
+        typed = journal.log.edits[-1]
+    assert np.allclose(np.array(typed.to) - typed.at, (-1.5, 0.25))  # type: ignore[attr-defined]
+    page.keyboard.press("g")
+    page.keyboard.press("Escape")
+    assert log_of(server) == ["move_vertex", "move_vertex"]
+
+
+def test_the_brush_shows_what_it_does(page: Page, server: Served) -> None:
+    """Dots come before the click, and the vertices are where they were; right takes away."""
+    page.keyboard.press("b")
+    page.locator("#set-count").fill("5")
+    page.locator("#set-radius").fill("15")
+    page.mouse.move(*place(page, 48, 32))
+    page.wait_for_function("() => trimotion.ghost?.fresh.length > 0")
+    ghost = page.evaluate("() => trimotion.ghost.fresh.map(p => [p.x, p.y])")
+    page.mouse.click(*place(page, 48, 32))
+    wait_for_edits(page, 1)
+    mesh = server.studio.session.worked(0).mesh
+    assert {tuple(at) for at in ghost} <= {tuple(at) for at in mesh.vertices.tolist()}
+    page.mouse.click(*place(page, 48, 32), button="right")
+    wait_for_edits(page, 2)
+    assert log_of(server) == ["insert", "remove"]
+    page.mouse.wheel(0, -240)
+    page.wait_for_function("() => trimotion.brush.radius > 15")
+    page.keyboard.press("o")
+    expect(page.locator("#set-spread")).to_have_value("normal")
+
+
+def test_a_region_is_triangulated_anew_and_pinned(page: Page, server: Served) -> None:
+    page.keyboard.press("r")
+    page.mouse.move(*place(page, 20, 15))
+    page.mouse.down()
+    for x, y in ((75, 15), (75, 50), (20, 50)):
+        page.mouse.move(*place(page, x, y))
+    page.mouse.up()
+    wait_for_edits(page, 1)
+    page.keyboard.press("a")
+    page.mouse.move(*place(page, *find(page, "vertex")))
+    page.keyboard.press("p")
+    page.mouse.click(*place(page, *find(page, "vertex")))
+    wait_for_edits(page, 2)
+    assert log_of(server)[0] == "retriangulate"
+    assert log_of(server)[1] in ("lock", "unlock")
+
+
+def test_what_cannot_be_done_is_told_in_one_line(page: Page, server: Served) -> None:
+    page.mouse.click(*place(page, 0.2, 0.2), button="right")
+    expect(page.locator("#toast")).to_contain_text("corner of the picture")
+    assert log_of(server) == []
+
+
+def test_keys_alone_reach_the_picture(page: Page, server: Served) -> None:
+    """The cursor moves by arrows, Enter splits, X collapses, J flips, Tab hides the mesh."""
+    page.locator("#stage").focus()
+    for key in ("ArrowRight", "ArrowDown", "Shift+ArrowLeft", "f", "Enter"):
+        page.keyboard.press(key)
+    wait_for_edits(page, 1)
+    page.keyboard.press("x")
+    wait_for_edits(page, 2)
+    assert log_of(server) == ["split_triangle", "collapse_vertex"]
+    page.keyboard.press("Tab")
+    page.wait_for_function("() => trimotion.opacities.mesh === 0")
+    page.keyboard.press("?")
+    expect(page.locator("#keys")).to_be_visible()
+    assert "flip the edge" in page.locator("#keys").inner_text()
+    page.keyboard.press("Escape")
+    expect(page.locator("#keys")).to_be_hidden()
+
+
+def test_zoom_leaves_what_is_under_the_pointer(page: Page) -> None:
+    x, y = place(page, 30, 20)
+    page.mouse.move(x, y)
+    page.mouse.wheel(0, -200)
+    page.wait_for_function("() => trimotion.camera.zoom > 8")
+    assert np.allclose(place(page, 30, 20), (x, y), atol=1)
+    page.mouse.down(button="middle")
+    page.mouse.move(x + 40, y - 10)
+    page.mouse.up(button="middle")
+    assert np.allclose(place(page, 30, 20), (x + 40, y - 10), atol=1)
+
+
+def test_a_reload_and_another_window(page: Page, browser: Browser, server: Served) -> None:
+    other = browser.new_page(viewport=SIZE)
+    other.goto(server.address.url)
+    expect(other.locator("#loading")).to_be_hidden()
+    page.mouse.click(*place(page, *find(page, "face")))
+    wait_for_edits(other, 1)
+    assert_shows_the_mesh(other, server)
+    other.close()
+    page.reload()
+    wait_for_edits(page, 1)
+    expect(page.locator("#loading")).to_be_hidden()
+    assert_shows_the_mesh(page, server)
+
+
+def test_all_is_named_for_those_who_do_not_see(page: Page) -> None:
+    """Every button and slider has a name, and the picture says how it is used."""
+    nameless = page.evaluate(
+        """() => [...document.querySelectorAll("button, input, select, canvas:not([aria-hidden])")]
+        .filter(e => !(e.innerText || e.ariaLabel || e.labels?.length || e.querySelector?.(".sr")))
+        .map(e => e.id)"""
+    )
+    assert nameless == []
+
+
+def test_the_layers_are_drawn(page: Page) -> None:
+    """A screenshot shows the picture, the style over it, or neither."""
+
+    def shot(picture: float, drawn: float) -> np.ndarray:
+        page.evaluate(
+            "([p, d]) => { trimotion.setOpacity('mesh', 0); trimotion.setOpacity('picture', p);"
+            " trimotion.setOpacity('drawn', d); }",
+            [picture, drawn],
+        )
+        page.evaluate(
+            "() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))"
+        )
+        return np.asarray(Image.open(io.BytesIO(page.screenshot())).convert("RGB")).astype(int)
+
+    left, top = place(page, 60, 50)
+    spots = np.s_[int(top) - 3 : int(top) + 3, int(left) - 3 : int(left) + 3]
+    picture = shot(1, 0)[spots].mean(axis=(0, 1))
+    assert np.abs(picture - (60 * 200 / 96, 50 * 200 / 64, 60)).max() < 8
+    assert np.abs(shot(1, 1)[spots].mean(axis=(0, 1)) - picture).max() < 60
+    assert shot(0, 0)[spots].max() < 40
