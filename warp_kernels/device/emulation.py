@@ -39,6 +39,12 @@ static thread_local Indices threadIdx, blockIdx, blockDim, gridDim;
 #define __launch_bounds__(...)
 #define __cluster_dims__(...)
 static inline int __ffsll(long long bits) {{ return __builtin_ffsll(bits); }}
+static inline int atomicMax(int* at, int value)
+{{
+    const int before = *at;
+    if (value > before) *at = value;
+    return before;
+}}
 #define WP_TILE_BLOCK_DIM {BLOCK}
 #define WP_NO_CRT
 #define WP_NO_BFLOAT16
