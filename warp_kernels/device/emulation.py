@@ -51,6 +51,9 @@ static inline int atomicMax(int* at, int value)
 #include "builtin.h"
 #define __CUDA_ARCH__ 900
 extern "C" void _wp_assert(const char*, const char*, unsigned) {{ __builtin_trap(); }}
+extern "C" int _wp_isfinite(double value) {{ return __builtin_isfinite(value); }}
+extern "C" int _wp_isnan(double value) {{ return __builtin_isnan(value); }}
+extern "C" int _wp_isinf(double value) {{ return __builtin_isinf(value); }}
 """
 """What a kernel finds on a card; Warp's own headers are read as the host's."""
 LAUNCH = """
@@ -245,7 +248,7 @@ def _compiled_header() -> Path:
 
 def _build(source: str, header: Path) -> Path:
     """The library of a source, compiled unless it is there already."""
-    name = _digest(source)
+    name = _digest(HEADER + source)
     library, written = _folder() / f"{name}.so", _folder() / f"{name}.cpp"
     if not library.exists():
         _put(written, source)
