@@ -15,7 +15,7 @@ from warp_kernels.device.device import Device
 from warp_kernels.drawing.canvas import Canvas
 from warp_kernels.drawing.moved import Moved
 from warp_kernels.errors import OptionError
-from warp_kernels.limits import MAX_SIDE
+from warp_kernels.limits import MAX_SIDE, SAMPLES
 from warp_kernels.scene.stroke_lay import Lay
 from warp_kernels.styles import Style
 
@@ -32,6 +32,7 @@ class Renderer:
         followed: Numbers of the masked styles that are drawn on the triangles of a followed
             region instead.
         moves: Whether triangles are drawn elsewhere than they lie.
+        samples: Samples of a pixel, across and down each, as `Canvas` takes them.
 
     Raises:
         OptionError: If the output is too large or has no pixel.
@@ -47,13 +48,16 @@ class Renderer:
         masked: tuple[Style, ...] = (),
         followed: tuple[int, ...] = (),
         moves: bool = False,
+        samples: int = SAMPLES,
     ) -> None:
         if not 1 <= min(output) <= max(output) <= MAX_SIDE:
             raise OptionError(
                 f"an output of {output[0]}x{output[1]}: sides must lie between 1 and {MAX_SIDE} px"
             )
         textures = [style.texture(read_gray) for style in (*styles, *masked)]
-        self._canvas = Canvas(device, picture, output, styles, masked, textures, followed, moves)
+        self._canvas = Canvas(
+            device, picture, output, styles, masked, textures, followed, moves, samples
+        )
 
     @property
     def is_transparent(self) -> bool:

@@ -15,10 +15,9 @@ from pipeline.editor.serving.server import serve
 from pipeline.editor.serving.studio import Studio
 from pipeline.track import TrackReader
 from tests import media_samples as samples
-from tests.tracks import solve_to
+from tests.tracks import solve_to, write_clip
 from warp_kernels.device.device import Device
 
-TRIANGLES = 40
 WAIT = 60.0
 """How long a server may take to start [s]."""
 
@@ -30,10 +29,17 @@ def write_job(folder: Path) -> Path:
     return folder / "job.mtrk"
 
 
+def write_clip_job(folder: Path) -> Path:
+    """A track of a clip of two shots in a folder."""
+    clip = write_clip(folder / "clip.mp4")
+    solve_to(folder / "clip.mtrk", clip)
+    return folder / "clip.mtrk"
+
+
 def opened(track: Path) -> Session:
     """A session on a track."""
     with TrackReader(track) as reader:
-        options = reader.header.solve
+        options = reader.header.whole_solve
     return Session(track, options, Device("cpu"))
 
 

@@ -1,9 +1,11 @@
 """A track is input from strangers: whatever is wrong with one, a command ends with one line."""
 
 import os
+import sqlite3
 import subprocess
 import sys
 import tracemalloc
+from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,6 +14,7 @@ import pytest
 from pipeline.cli import main
 from pipeline.track import TrackReader
 from pipeline.track.plain_values import UnknownNameError, from_plain, to_plain
+from pipeline.track.schema import open_existing
 from stages.layouts.importance import Importance
 from stages.validate import InvalidMeshError, assert_finite, assert_sound, assert_valid
 from tests.bad_tracks import NAMES, bomb, copy_of, discard, map_of, plant
@@ -108,6 +111,24 @@ def test_bombs_cost_little_memory(folder: Path, tmp_path: Path) -> None:
     assert ended.stderr.count("\n") == len(paths)
     assert "Traceback" not in ended.stderr
     assert int(ended.stdout.split()[-1]) < MOST_MEMORY
+
+
+def test_a_file_commands_nothing(folder: Path, tmp_path: Path) -> None:
+    """A connection takes no long statement, no second file, no deep expression and no function of
+    a schema that does anything."""
+    path = tmp_path / "copy.mtrk"
+    path.write_bytes((folder / "good.mtrk").read_bytes())
+    with closing(open_existing(path)) as connection:
+        assert connection.execute("PRAGMA trusted_schema").fetchone() == (0,)
+        assert connection.execute("PRAGMA cell_size_check").fetchone() == (1,)
+        deep = "(" * 100 + "1" + "+1)" * 100
+        many = " UNION ".join(["SELECT 1"] * 100)
+        for statement in (f"SELECT {deep}", many, f"SELECT 1 -- {'x' * 200_000}"):
+            with pytest.raises(sqlite3.Error):
+                connection.execute(statement)
+        connection.execute("ATTACH ':memory:' AS part")  # as join does
+        with pytest.raises(sqlite3.Error, match="too many attached"):
+            connection.execute("ATTACH ':memory:' AS other")
 
 
 def test_good_tracks_pass(folder: Path) -> None:

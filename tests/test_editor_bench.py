@@ -78,6 +78,8 @@ def test_edits_are_shown_undone_and_done_again(session: Session) -> None:
         "number": number,
         "edits": 1,
         "edited": [0],
+        "pending": [0],
+        "hasGround": True,
         "canUndo": True,
         "canRedo": False,
     }

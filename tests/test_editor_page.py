@@ -15,7 +15,7 @@ from playwright.sync_api import Browser, Page, expect, sync_playwright
 
 from pipeline.edit_log.journal import EditJournal
 from stages.hand import EDITS
-from tests.editing import Served, browser_path, served, write_job
+from tests.editing import Served, browser_path, served, write_clip_job, write_job
 
 ARGUMENTS = ["--no-sandbox", "--enable-unsafe-swiftshader"]
 SIZE = {"width": 1000, "height": 640}
@@ -40,6 +40,13 @@ def browser() -> Iterator[Browser]:
 def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
     """A server with a still."""
     with served(write_job(tmp_path_factory.mktemp("job"))) as found:
+        yield found
+
+
+@pytest.fixture(scope="module")
+def clip_server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+    """A server with a clip of two shots."""
+    with served(write_clip_job(tmp_path_factory.mktemp("film"))) as found:
         yield found
 
 
@@ -300,3 +307,35 @@ def test_the_layers_are_drawn(page: Page) -> None:
     assert np.abs(picture - (60 * 200 / 96, 50 * 200 / 64, 60)).max() < 8
     assert np.abs(shot(1, 1)[spots].mean(axis=(0, 1)) - picture).max() < 60
     assert shot(0, 0)[spots].max() < 40
+
+
+def test_time_and_the_way_through_a_shot(browser: Browser, clip_server: Served) -> None:
+    """Seek, edit, apply, compare, play and render: all that one does with a film."""
+    page = browser.new_page(viewport=SIZE)
+    page.set_default_timeout(30_000)
+    page.goto(clip_server.address.url)
+    expect(page.locator("#loading")).to_be_hidden()
+    strip = page.locator("#strip").bounding_box()
+    assert strip is not None
+    page.mouse.click(strip["x"] + strip["width"] * 3.5 / 12, strip["y"] + 10)
+    page.wait_for_function("() => trimotion.mesh?.frame === 3")
+    page.keyboard.press(".")
+    page.wait_for_function("() => trimotion.mesh?.frame === 4")
+    page.mouse.click(*place(page, *find(page, "face")))
+    wait_for_edits(page, 1)
+    expect(page.locator("#film-note")).to_contain_text("do not reach through their shots yet")
+    page.locator("#apply").click()
+    expect(page.locator("#film-note")).to_contain_text("The film follows all of your edits")
+    shown = {}
+    for view in ("before", "solved"):
+        page.locator(f"[data-view={view}]").click()
+        page.wait_for_function(f"() => trimotion.view === '{view}' && !trimotion.isLooking")
+        shown[view] = page.evaluate("() => trimotion.mesh.held.reduce((sum, one) => sum + one, 0)")
+    assert shown == {"before": 0, "solved": 1}
+    page.keyboard.press(" ")
+    page.wait_for_function("() => trimotion.player.shown > 1")
+    page.wait_for_function("() => !trimotion.isPlaying && trimotion.frame === 11")
+    page.locator("#render").click()
+    expect(page.locator("#toast")).to_contain_text("Rendering clip")
+    assert len(list(clip_server.studio.session.path.parent.glob("clip.2*.mp4"))) == 1
+    page.close()

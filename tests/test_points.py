@@ -1,5 +1,8 @@
 """The points of a row: every pixel is divided among its triangles, whatever these are."""
 
+from functools import cache
+from typing import Any
+
 import numpy as np
 import pytest
 import warp as wp
@@ -18,42 +21,47 @@ from warp_kernels.drawing.sample_points import (
     parts_of_a_pixel,
     point_lister,
 )
+from warp_kernels.limits import MAX_SAMPLES, SAMPLES
 
-SAMPLES = 3
 SIZE = (30.0, 12.0)
 """Width and height of a sample [2^-16 px]."""
 
-list_points = point_lister(SAMPLES)
 
+@cache
+def stretch_kernel(samples: int) -> Any:
+    """A kernel that lists the points of one stretch."""
+    list_points = point_lister(samples)
 
-@wp.kernel(enable_backward=False)
-def list_stretch(
-    span: wp.array(dtype=wp.vec2i),
-    line: wp.array(dtype=int),
-    width: int,
-    column: int,
-    parts: wp.array2d(dtype=int),
-    list_out: wp.array(dtype=int),
-    found_out: wp.array(dtype=wp.vec3i),
-):
-    """List the points of one stretch."""
-    if span[0][0] + wp.tid() < span[0][1]:
-        most = width / 3 - column
-        found_out[0] = list_points(line.ptr, width, column, most, parts.ptr, list_out.ptr)
+    @wp.kernel(enable_backward=False, module="unique")
+    def list_stretch(
+        span: wp.array(dtype=wp.vec2i),
+        line: wp.array(dtype=int),
+        width: int,
+        column: int,
+        parts: wp.array2d(dtype=int),
+        list_out: wp.array(dtype=int),
+        found_out: wp.array(dtype=wp.vec3i),
+    ):
+        """List them."""
+        if span[0][0] + wp.tid() < span[0][1]:
+            most = width / wp.static(samples) - column
+            found_out[0] = list_points(line.ptr, width, column, most, parts.ptr, list_out.ptr)
+
+    return list_stretch
 
 
 def stretches_of(samples: np.ndarray, device: Device) -> list[tuple[np.ndarray, np.ndarray]]:
-    """The list [5, ROOM] and what was found, for every stretch of a row of samples [3, 3 W]."""
-    width = samples.shape[1]
+    """The list [5, ROOM] and what was found, for every stretch of a row of samples [n, n W]."""
+    side, width = samples.shape
     line = device.empty(samples.size + LANES, int)
     device.write(line, samples.ravel())
-    parts = device.empty((1 << SAMPLES**2, 3), int)
-    device.write(parts, parts_of_a_pixel(SAMPLES, SIZE))
+    parts = device.empty((1 << side**2, 3), int)
+    device.write(parts, parts_of_a_pixel(side, SIZE))
     lists, found = device.empty(LIST, int), device.empty(1, wp.vec3i)
     column, stretches = 0, []
-    while column < width // SAMPLES:
+    while column < width // side:
         inputs = [line, width, column, parts]
-        phase = device.record(list_stretch, inputs, [lists, found])
+        phase = device.record(stretch_kernel(side), inputs, [lists, found])
         phase.resize(1)
         device.run([phase])
         numbers = device.read(found, 1)[0]
@@ -62,33 +70,41 @@ def stretches_of(samples: np.ndarray, device: Device) -> list[tuple[np.ndarray, 
     return stretches
 
 
-def in_runs(width: int, longest: int, seed: int) -> np.ndarray:
-    """Rows of samples [3, 3 W] with a triangle's border every now and then, about a column."""
+def in_runs(side: int, width: int, longest: int, seed: int) -> np.ndarray:
+    """Rows of samples [n, n W] with a triangle's border every now and then, about a column."""
     rng = np.random.default_rng(seed)
-    borders = np.cumsum(rng.integers(1, longest + 1, 3 * width))
-    columns = np.arange(3 * width)
-    rows = [np.searchsorted(borders, columns + shift) for shift in (0, 1, 3)]
+    borders = np.cumsum(rng.integers(1, longest + 1, side * width))
+    columns = np.arange(side * width)
+    rows = [np.searchsorted(borders, columns + shift) for shift in (0, 1, 3, 4)[:side]]
     return np.array(rows)
 
 
-ROWS = {
-    "one_pixel": np.zeros((3, 3), dtype=int),
-    "one_triangle": np.full((3, 3 * 300), 7),
-    "whole_pixels": np.tile(np.repeat(np.arange(300), 3), (3, 1)),
-    "long_runs": in_runs(301, 90, 0),
-    "short_runs": in_runs(190, 9, 1),
-    "tiny_triangles": in_runs(150, 2, 2),
-    "a_triangle_for_each_sample": np.arange(9 * 140).reshape(3, -1),
-}
+def rows_of(name: str, side: int) -> np.ndarray:
+    """Rows of samples [n, n W] of a kind."""
+    runs = {"long_runs": (301, 90, 0), "short_runs": (190, 9, 1), "tiny_triangles": (150, 2, 2)}
+    if name in runs:
+        return in_runs(side, *runs[name])
+    rows = {
+        "one_pixel": np.zeros((side, side), dtype=int),
+        "one_triangle": np.full((side, side * 300), 7),
+        "whole_pixels": np.tile(np.repeat(np.arange(300), side), (side, 1)),
+        "a_triangle_for_each_sample": np.arange(side * side * 140).reshape(side, -1),
+    }
+    return rows[name]
 
 
-@pytest.mark.parametrize("name", ROWS)
-def test_pixels_are_divided_among_their_triangles(name: str, device: str) -> None:
+NAMES = ["one_pixel", "one_triangle", "whole_pixels", "long_runs", "short_runs", "tiny_triangles"]
+NAMES += ["a_triangle_for_each_sample"]
+
+
+@pytest.mark.parametrize("side", [1, 2, SAMPLES, MAX_SAMPLES])
+@pytest.mark.parametrize("name", NAMES)
+def test_pixels_are_divided_among_their_triangles(name: str, side: int, device: str) -> None:
     """Each triangle of a pixel has one point in the middle of its samples; nothing is left out."""
-    samples = ROWS[name]
-    width = samples.shape[1] // SAMPLES
-    pixels = samples.reshape(SAMPLES, width, SAMPLES).swapaxes(0, 1)
-    down, right = np.divmod(np.arange(9), 3) - np.array([[1], [1]])
+    samples = rows_of(name, side)
+    width = samples.shape[1] // side
+    pixels = samples.reshape(side, width, side).swapaxes(0, 1)
+    down, right = np.divmod(np.arange(side**2), side) - np.array([[(side - 1) / 2]])
     first = 0
     for points, (count, begin, end) in stretches_of(samples, Device(device)):
         assert 1 <= count <= begin <= STRETCH
@@ -111,7 +127,7 @@ def test_pixels_are_divided_among_their_triangles(name: str, device: str) -> Non
 
 def test_spare_points_lie_in_a_triangle_of_the_stretch(device: str) -> None:
     """They are looked at like the others: what they hold must be there."""
-    samples = in_runs(137, 20, 3)
+    samples = in_runs(SAMPLES, 137, 20, 3)
     for points, (_, _, end) in stretches_of(samples, Device(device)):
         spare = slice(end, -(-end // LANES) * LANES)
         assert (points[PIXEL // ROOM, spare] == 0).all()

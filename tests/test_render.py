@@ -14,7 +14,7 @@ from tests.kernel_samples import noise, random_mesh, snapshot_of, waves
 from warp_kernels.color_model import CONSTANT, LINEAR, QUADRATIC
 from warp_kernels.device.device import Device
 from warp_kernels.errors import OptionError
-from warp_kernels.limits import MAX_SIDE
+from warp_kernels.limits import MAX_SAMPLES, MAX_SIDE
 from warp_kernels.styles import STYLES, Style
 from warp_kernels.styles.edges import Edges
 from warp_kernels.styles.flat import Flat
@@ -272,3 +272,26 @@ def test_golden_pictures(
     snapshot = snapshot_of(Device(device), waves(96, 64), random_mesh(96, 64, 60, seed=8), model)
     pixels = draw(snapshot, device, *stack, size=size)
     assert_matches_golden(pixels, f"{name}_{size[0]}x{size[1]}")
+
+
+def test_more_samples_bring_borders_nearer_to_how_much_is_covered(device: str) -> None:
+    """A slanted border of black and white, whose pixels are known exactly."""
+    width, height, slope = 24, 20, 0.37
+    ends = np.array([[6.0, 0.0], [6.0 + slope * height, height]])
+    points = np.array([[0, 0], *ends[:1], [width, 0], [width, height], *ends[1:], [0, height]])
+    triangles = np.array([[0, 1, 4], [0, 4, 5], [1, 2, 3], [1, 3, 4]])
+    snapshot = painted(mesh_of(points, triangles, width, height), np.repeat([0, 255], 2)[:, None])
+    fine = np.arange(64 * width) + 0.5
+    rows = ends[0, 0] + slope * (np.arange(64 * height) + 0.5) / 64
+    covered = (fine / 64 > rows[:, None]).reshape(height, 64, width, 64).mean(axis=(1, 3))
+    off = []
+    for samples in range(1, MAX_SAMPLES + 1):
+        renderer = Renderer(
+            Device(device), (width, height), (width, height), (Flat(),), samples=samples
+        )
+        found = renderer.render(snapshot)[..., 0] / 255
+        steps = found * samples**2
+        assert np.abs(steps - np.rint(steps)).max() < 0.05
+        off.append(float(np.abs(found - covered).mean()))
+    assert off == sorted(off, reverse=True)
+    assert off[-1] < 0.3 * off[0]

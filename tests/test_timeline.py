@@ -307,21 +307,33 @@ def test_shipped_timelines_fit_films_of_any_length(name: str, seconds: int) -> N
     assert len(show.sections) == len(timeline.sections)
 
 
-@pytest.mark.parametrize("path", sorted(TEMPLATES.glob("*.toml")), ids=lambda path: path.stem)
+@pytest.mark.parametrize("name", [*shipped_timelines(), "everything"])
 def test_broken_timelines_are_told_in_one_line(
-    path: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Some of what benchmarks/broken_timelines.py tries, in this process."""
-    clip = samples.write_video(tmp_path / "clip.mp4", [samples.picture(32, 32)] * 50)
+    """Some of what benchmarks/broken_timelines.py tries."""
+    clip = samples.write_video(tmp_path / "clip.mp4", [samples.picture(32, 32)] * 125)
     show, refused = tmp_path / "show.toml", 0
-    for text in islice(broken_timelines.mutants(path.read_text("utf-8"), 7), 12):
+    shipped = TEMPLATES / f"{name}.toml"
+    whole = shipped.read_text("utf-8") if shipped.exists() else broken_timelines.everything()
+    show.write_text(whole, "utf-8")
+    assert main(["timeline", str(show), "--check", str(clip)]) == 0
+    for text in islice(broken_timelines.mutants(whole, 7), 12):
         show.write_text(text, "utf-8")
         code = main(["timeline", str(show), "--check", str(clip)])
         told = capsys.readouterr().err.splitlines()
         refused += code == 2
         assert (code, told) == (0, []) or (code == 2 and len(told) == 1), (text, told)
         assert not told or broken_timelines.TOLD.fullmatch(told[0]), told
+        assert not broken_timelines.PYTHON.search(" ".join(told)), told
     assert refused > 6
+
+
+def test_a_switch_that_is_none_is_told() -> None:
+    """A curve of a switch reads its values by the rule of switches, and says so at its place."""
+    text = '[[section]]\nmove = ["jitter"]\n[curves]\n"jitter.loose" = "start: maybe"\n'
+    with pytest.raises(OptionError, match=r"^show\.toml:4:19: 'maybe' is not true or false; write"):
+        parse_timeline(text, "show.toml", Look())
 
 
 def test_beats_of_a_name_that_no_file_can_have_are_told() -> None:

@@ -102,6 +102,7 @@ class LookKeywords(TypedDict, total=False):
     grade: str | None
     size: str | tuple[int, int] | None
     scale: float | None
+    samples: int
     fit: str
     background: str | None
     blend: int
@@ -149,6 +150,7 @@ class DrawKeywords(DeviceKeywords, total=False):
     grade: str | None
     size: str | tuple[int, int] | None
     scale: float | None
+    samples: int
     fit: str
     background: str | None
 
@@ -181,7 +183,8 @@ def _for_pictures(option: Option) -> bool:
 
 
 DRAWN = (
-    *("styles", "moves", "palette", "grade", "output_size", "scale", "fit", "background"),
+    *("styles", "moves", "palette", "grade", "output_size", "scale", "samples", "fit"),
+    "background",
     *("device", "threads"),
 )
 """Options that say how one frame is drawn."""

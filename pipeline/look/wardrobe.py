@@ -91,6 +91,7 @@ class Wardrobe:
         model: ColorModel,
     ) -> None:
         self._device, self._picture, self._drawn, self._model = device, picture, drawn, model
+        self._samples = look.samples
         self._columns = {(r.mask, r.frames): place for place, r in enumerate(look.followed)}
         self._followed = len(look.followed)
         self._renderers: dict[Any, Renderer] = {}
@@ -119,7 +120,9 @@ class Wardrobe:
         kind = kind_of_stack(*stack.parts)
         found = self._renderers.get(kind)
         if found is None:
-            found = Renderer(self._device, self._picture, self._drawn, *stack.parts)
+            found = Renderer(
+                self._device, self._picture, self._drawn, *stack.parts, samples=self._samples
+            )
             self._renderers[kind] = found
         elif self._dressed.get(id(found)) != stack:
             found.restyle(*stack.parts[:2])

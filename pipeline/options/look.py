@@ -13,7 +13,7 @@ from stages.toning.grade import Grade
 from stages.toning.palette import Palette
 from warp_kernels.color_model import CONSTANT, LINEAR, ColorModel
 from warp_kernels.errors import OptionError
-from warp_kernels.limits import MAX_SIDE
+from warp_kernels.limits import MAX_SAMPLES, MAX_SIDE, SAMPLES
 from warp_kernels.styles import STYLES, Style
 from warp_kernels.styles.color import parse_color
 
@@ -117,6 +117,14 @@ class Look:
         default=None, metadata={"help": "size of the output relative to the source"}
     )
     """Size of the output relative to the source, or None."""
+    samples: int = field(
+        default=SAMPLES,
+        metadata={
+            "help": "samples of a pixel, across and down each: 4 makes borders smoother, 1 leaves "
+            "them jagged"
+        },
+    )
+    """Samples of an output pixel, across and down each."""
     blend: int = field(
         default=0,
         metadata={
@@ -163,6 +171,10 @@ class Look:
         if self.scale is not None and not 0 < self.scale <= MAX_SIDE:
             raise OptionError(
                 f"--scale {self.scale:g}: must be above 0 and at most {MAX_SIDE}; try 2"
+            )
+        if not 1 <= self.samples <= MAX_SAMPLES:
+            raise OptionError(
+                f"--samples {self.samples}: must lie between 1 and {MAX_SAMPLES}, across and down"
             )
         if not 0 <= self.blend <= MAX_BLEND:
             raise OptionError(f"--blend {self.blend}: must lie between 0 (off) and {MAX_BLEND}")

@@ -1,6 +1,7 @@
 """What curves change: `edges.width`, `edges[1].width` for the second of a name, `opacity`."""
 
 import re
+from argparse import ArgumentTypeError
 from collections.abc import Iterator, Mapping
 from dataclasses import Field, dataclass, fields, replace
 from functools import lru_cache
@@ -180,7 +181,10 @@ class Kind:
                 raise ValueError(f"{text}: must lie {bounds}")
             return number
         if self.name == "bool":
-            return read_value("bool", text, "value")
+            try:
+                return read_value("bool", text)
+            except ArgumentTypeError as error:
+                raise ValueError(str(error)) from error
         if self.is_color:
             parse_color(text)
         if self.choices and text not in self.choices:

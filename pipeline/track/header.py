@@ -86,9 +86,17 @@ class Header:
     @cached_property
     def solve(self) -> SolveOptions:
         """The options again, without a list of cuts and without pictures, which draw nothing."""
+        return self._solve(arrays=False)
+
+    @property
+    def whole_solve(self) -> SolveOptions:
+        """The same with pictures, by which a shot of the track can be solved again."""
+        return self._solve(arrays=True)
+
+    def _solve(self, *, arrays: bool) -> SolveOptions:
         listed = isinstance(self.options["cuts"], list)
         options = {**self.options, "cuts": "none"} if listed else self.options
-        solve: SolveOptions = from_plain(SolveOptions, options, arrays=False)
+        solve: SolveOptions = from_plain(SolveOptions, options, arrays=arrays)
         return solve
 
     def with_range(self, frame_range: FrameRange) -> "Header":

@@ -26,6 +26,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from pipeline.track.guard import guard
 from stages.media.writing.commit import PendingFile, output_error
 from warp_kernels.errors import OutputError, TrackError
 
@@ -221,7 +222,7 @@ def _connect(path: Path, mode: str) -> sqlite3.Connection:
     connection = sqlite3.connect(
         address, uri=True, timeout=WAIT, isolation_level=None, check_same_thread=False
     )
-    connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, MOST_BYTES)
+    guard(connection, MOST_BYTES)
     return connection
 
 

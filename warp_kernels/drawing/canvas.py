@@ -23,17 +23,13 @@ from warp_kernels.drawing.sample_points import LIST, parts_of_a_pixel
 from warp_kernels.drawing.shade import record_shade, shading_kernel
 from warp_kernels.drawing.store import channels_of
 from warp_kernels.drawing.triangle_setup import prepare_kernel, record_prepare
-from warp_kernels.limits import MAX_SIDE
+from warp_kernels.limits import MAX_SIDE, SAMPLES
 from warp_kernels.scene.places import centres, hashes_of, to_places
 from warp_kernels.scene.scene import FIXED, Numbers, Scene, StyleParameters
 from warp_kernels.scene.source_picture import reduced, step_for
 from warp_kernels.scene.stroke_lay import own_lay
 from warp_kernels.scene.texels import Texels, pack
 from warp_kernels.styles import Style
-
-SAMPLES = 3
-"""Samples per output pixel, across and down each; fewer where the sample grid would exceed what
-coverage can count, see `raster.MAX_SIDE`."""
 
 
 class Canvas:
@@ -49,6 +45,8 @@ class Canvas:
         followed: Numbers of the masked styles that are drawn on triangles of `Paint.shares`
             instead, in the order of these.
         moves: Whether triangles are drawn elsewhere than they lie.
+        samples: Samples of an output pixel, across and down each, at most `MAX_SAMPLES`; fewer
+            where their grid would exceed what coverage can count, see `MAX_SIDE`.
     """
 
     def __init__(
@@ -61,11 +59,12 @@ class Canvas:
         textures: list[Texels | None],
         followed: tuple[int, ...] = (),
         moves: bool = False,
+        samples: int = SAMPLES,
     ) -> None:
         self.device = device
         self.picture = picture
         self.output = output
-        self.samples = max(1, min(SAMPLES, MAX_SIDE // max(output)))
+        self.samples = max(1, min(samples, MAX_SIDE // max(output)))
         self._coats, self._moves = coats_of(styles, masked, followed, moves), moves
         self._masked, self._followed = len(masked) - len(followed), len(followed)
         self._is_even = all(style.is_even for style in styles) and not (masked or moves)

@@ -20,15 +20,13 @@ from warp_kernels.moments.edge_moments import record_edge_moments
 from warp_kernels.moments.fragments import record_fragment_moments
 from warp_kernels.moments.moment_layout import layout_of_moments, moment_types
 from warp_kernels.moments.pixel_moments import check_size
-from warp_kernels.moments.pixel_weights import reduced_weights
+from warp_kernels.moments.pixel_weights import write_weights
 from warp_kernels.moments.prefix_tables import record_image_tables, table_length
 from warp_kernels.moments.variants import EDGE_VERSIONS, TRIANGLE_VARIANTS
 from warp_kernels.raster import SUBPIXELS
 
 FAR = 1e6
 """First trust region of a vertex [px]: the common one rules until steps turn round."""
-
-
 DISPLACEMENT = 1.0
 """Distance between a triangle and its variants [px]: Delta of Eq. 11."""
 
@@ -67,7 +65,7 @@ class Workspace:
         self.pixels = self._empty((height, width), wp.vec3ub)
         self._weights = self._empty((height, width) if self.layout.wide else (1, 1), wp.uint8)
         self.gauge = self._empty(1, wp.vec3d)
-        self._load_weights(None)
+        write_weights(device, None, size, weights_out=self._weights, gauge_out=self.gauge)
         self.table = self._empty(table_length(width, height, self.layout), types.entry)
         self._controls, self._probe = self._empty(3, wp.float64), self._empty(1, wp.int32)
         self._displacement = 0.0
@@ -81,6 +79,7 @@ class Workspace:
         self.placed: object = None
         """The mesh that lies here, as its owner knows it, over the picture at hand."""
         self._held = self._fitted = False
+        self._seen: list[np.ndarray] | None = None
         self._allocate(vertices=512, triangles=1024)
 
     def load_image(self, pixels: np.ndarray, weights: np.ndarray | None = None) -> None:
@@ -103,19 +102,12 @@ class Workspace:
         self._fitted = False
         self.device.write(self.pixels, pixels)
         if self.weighted:
-            self._load_weights(weights)
+            write_weights(
+                self.device, weights, self.size, weights_out=self._weights, gauge_out=self.gauge
+            )
         elif weights is not None:
             raise ValueError("this workspace takes no weights; make it with weighted=True")
         self.device.run([self._tables])
-
-    def _load_weights(self, weights: np.ndarray | None) -> None:
-        """Write weights without a common divisor, and the scale of the energies they lead to."""
-        width, height = self.size
-        reduced, mean = np.ones(self._weights.shape, dtype=np.uint8), 1.0
-        if weights is not None:
-            reduced, mean = reduced_weights(weights, self.size)
-        self.device.write(self._weights, reduced)
-        self.device.write(self.gauge, np.array([[1.0 / mean, width // 2, height // 2]]))
 
     def load_mesh(
         self,
@@ -139,20 +131,18 @@ class Workspace:
             fan_corners: Corners 3 t + c by vertex, [3 T].
             freedom: 1 where a coordinate may change, else 0, [V, 2].
         """
-        self.placed, self._held, self._fitted = None, False, False
+        self.placed, self._seen, self._held, self._fitted = None, None, False, False
         self._counts, self._front = (len(vertices), len(triangles), len(edges)), 0
         self._grow()
-        for array, values in (
-            (self._vertices[0], vertices),
-            (self.triangles, triangles),
-            (self._edges, edges),
-            (self.sides, sides),
-            (self._fan_offsets, fan_offsets),
-            (self._fan_corners, fan_corners),
-            (self._freedom, freedom),
-        ):
-            self.device.write(array, values)
-        self.device.write(self._moved, np.ones(len(vertices), dtype=np.int32))
+        write = self.device.write
+        write(self._vertices[0], vertices)
+        write(self.triangles, triangles)
+        write(self._edges, edges)
+        write(self.sides, sides)
+        write(self._fan_offsets, fan_offsets)
+        write(self._fan_corners, fan_corners)
+        write(self._freedom, freedom)
+        write(self._moved, np.ones(len(vertices), dtype=np.int32))
         self._resize()
 
     def hold(self, anchors: np.ndarray) -> None:
@@ -186,7 +176,7 @@ class Workspace:
         """
         if not self._held:
             raise ValueError("a mesh was placed and not held; see `hold`")
-        self.placed, self._fitted = None, False
+        self.placed, self._fitted, self._seen = None, False, None
         self._displace(displacement)
         self.device.write(self._controls, np.array([trust, regularity, dead_band]))
         there, back = (
@@ -207,18 +197,25 @@ class Workspace:
 
     def vertices(self) -> np.ndarray:
         """Positions as they stand now [px], [V, 2] float64."""
-        return self.device.read(self.standing, self._counts[0])
+        return self._looked()[0]
 
     def energies(self) -> np.ndarray:
         """E of all thirteen variants of every triangle as it stands, 1 px apart, [T, 13]."""
         self._displace(DISPLACEMENT)
+        self._seen = None
         self.device.run([self._moments[self._front], self._energy])
         return self.device.read(self._energies, self._counts[1])
 
     def last_energy(self) -> float:
         """Energy of the mesh before the last step of `iterate` [code value^2 px]."""
-        (energies,) = self.device.read_all([Rows(self._energies, self._counts[1], column=0)])
-        return float(energies.sum())
+        return float(self._looked()[1].sum())
+
+    def _looked(self) -> list[np.ndarray]:
+        """Vertices and energies, read at once: a second copy takes a card as long as the first."""
+        if self._seen is None:
+            energies = Rows(self._energies, self._counts[1], column=0)
+            self._seen = self.device.read_all([Rows(self.standing, self._counts[0]), energies])
+        return self._seen
 
     def moments(self) -> tuple[np.ndarray, np.ndarray]:
         """Colour and area sums as they stand: [E, ., 9] with edges, [T, 13, .] with fragments.
@@ -228,8 +225,9 @@ class Workspace:
         self._displace(DISPLACEMENT)
         self.device.run([self._moments[self._front]])
         count = self._counts[2 if self.sums == "edges" else 1]
-        sums = [Rows(array, count) for array in (self._color_sums, self._area_sums)]
-        color, area = self.device.read_all(sums)
+        color, area = self.device.read_all(
+            [Rows(self._color_sums, count), Rows(self._area_sums, count)]
+        )
         return color.view(np.int64), area.view(np.int64)
 
     def fit(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

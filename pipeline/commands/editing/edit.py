@@ -87,6 +87,7 @@ def _studio(arguments: argparse.Namespace, track: Path) -> "Studio":
     """The track, opened."""
     from pipeline.editor.bench.session import Session
     from pipeline.editor.serving.studio import Studio
+    from pipeline.options.run import Run
     from pipeline.track import TrackReader
     from warp_kernels.device.device import Device
 
@@ -94,8 +95,9 @@ def _studio(arguments: argparse.Namespace, track: Path) -> "Studio":
         options = _with_source(reader, arguments, track)
     with progress_for(arguments) as progress:
         name = getattr(arguments, "device", "auto")
-        device = Device(name, getattr(arguments, "threads", 0), progress.kernels)
-    return Studio(Session(track, options, device), _log)
+        run = Run(name, getattr(arguments, "threads", 0))
+        device = Device(run.device, run.threads, progress.kernels)
+    return Studio(Session(track, options, device, run), _log)
 
 
 def _with_source(reader: Any, arguments: argparse.Namespace, track: Path) -> "SolveOptions":
@@ -108,7 +110,7 @@ def _with_source(reader: Any, arguments: argparse.Namespace, track: Path) -> "So
     opened = Path(arguments.source)
     named = arguments.moved or (reader.header.source.path if opened == track else opened)
     reader.header.source.check(Path(named))
-    options: SolveOptions = replace(reader.header.solve, source=Path(named))
+    options: SolveOptions = replace(reader.header.whole_solve, source=Path(named))
     return options
 
 

@@ -22,6 +22,8 @@ from warp_kernels.device.device import Device
 
 MOST_ACROSS = 1920
 """Widest picture that is drawn for the page [px]."""
+THUMBNAIL_ACROSS = 128
+"""Widest thumbnail [px]."""
 
 
 class Easel:
@@ -69,25 +71,44 @@ class Easel:
         rng = np.random.default_rng([self._options.seed, frame.index])
         return self._triangulator(model).first(frame, self._options.layout, rng)
 
-    def drawn(self, snapshot: Snapshot, frame: Frame, look: Look, time: float = 0.0) -> np.ndarray:
+    def drawn(
+        self, snapshot: Snapshot, frame: Frame | None, look: Look, time: float = 0.0
+    ) -> np.ndarray:
         """A frame as the output shows it, at most `MOST_ACROSS` wide.
 
         Args:
             snapshot: The triangles.
-            frame: The picture.
+            frame: The picture; None if the look does not show it.
             look: How they are drawn.
             time: When it is shown [s].
 
         Returns:
             Code values, [rows, columns, 3 or 4] uint8.
         """
-        look = replace(look, scale=min(1.0, MOST_ACROSS / self._size[0]), output_size=None)
+        return self._drawn(snapshot, frame, look, time, MOST_ACROSS)
+
+    def thumbnail(self, snapshot: Snapshot) -> np.ndarray:
+        """A frame in small, in the colours of its triangles.
+
+        Args:
+            snapshot: The triangles.
+
+        Returns:
+            Code values, [rows, columns, 3] uint8.
+        """
+        return self._drawn(snapshot, None, look_of(()), 0.0, THUMBNAIL_ACROSS)
+
+    def _drawn(
+        self, snapshot: Snapshot, frame: Frame | None, look: Look, time: float, most: int
+    ) -> np.ndarray:
+        look = replace(look, scale=min(1.0, most / self._size[0]), output_size=None)
         framing = look.framing_for(self._size, Fraction(1))
         wardrobe = self._wardrobes.get(framing.picture)
         if wardrobe is None:
             wardrobe = Wardrobe(self._device, self._size, framing.picture, look, self.model)
             self._wardrobes[framing.picture] = wardrobe
-        view = Posed(snapshot, None, frame.pixels, {}, None, None, {}, time)
+        source = None if frame is None else frame.pixels
+        view = Posed(snapshot, None, source, {}, None, None, {}, time)
         return framed(wardrobe.draw(look, view), framing, look.backdrop(self.model))
 
     @property

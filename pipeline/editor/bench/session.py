@@ -3,6 +3,7 @@
 from collections import OrderedDict
 from collections.abc import Sequence
 from dataclasses import dataclass
+from enum import Enum
 from pathlib import Path
 from typing import Any
 
@@ -10,24 +11,40 @@ import numpy as np
 
 from pipeline.edit_log.journal import EditJournal
 from pipeline.editor.bench.easel import Easel
+from pipeline.editor.bench.film import Film
 from pipeline.editor.bench.pictures import Pictures
 from pipeline.editor.bench.replays import Replays
 from pipeline.options.edit_log import EditLog
 from pipeline.options.look import Look
+from pipeline.options.run import Run
 from pipeline.options.solve_options import SolveOptions
-from pipeline.track import TrackReader
 from stages.frame import Frame
 from stages.hand import Edit
 from stages.hand.worked import Worked
+from stages.media.writing.commit import write_file
+from stages.media.writing.still_writer import encode_still
 from stages.snapshot import Snapshot
 from warp_kernels.color_model import ColorModel
 from warp_kernels.device.device import Device
-from warp_kernels.errors import EditError, TrackError
+from warp_kernels.errors import EditError, OutputError
 
+ANYWHERE = Run()
+"""Any device, all cores."""
+EDITED, SOLVED, BEFORE = "edited", "solved", "before"
+VIEWS = (EDITED, SOLVED, BEFORE)
+"""A frame with the edits just made, as the film has it, as it was before any edit."""
 MOST_FRAMES = 24
 """Frames whose edited states are kept."""
 MOST_FITTED = 8
 """Meshes whose colours are kept."""
+
+
+class Ground(Enum):
+    """On what a frame's edits are made."""
+
+    FILM = "the track's frame"
+    KEPT = "the frame that was kept before edits were applied"
+    ANEW = "the frame solved by itself: edits with which the track was solved were undone"
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,34 +64,23 @@ class Session:
         track: The track's file.
         options: How it was solved, with its source where that is now.
         device: Where kernels run.
+        run: What long work may use.
 
     Raises:
         TrackError: If it holds no frame, or is damaged.
     """
 
-    def __init__(self, track: Path, options: SolveOptions, device: Device) -> None:
-        self.path, self.options = track, options
-        self._reader = TrackReader(track)
+    def __init__(
+        self, track: Path, options: SolveOptions, device: Device, run: Run = ANYWHERE
+    ) -> None:
+        self.path, self.options, self.run = track, options, run
         self._journal = EditJournal(track)
-        if not self._reader.rows:
-            raise TrackError(f"{track}: holds no frame yet; solve it again")
-        self.info = self._reader.header.info
-        self._frames = {row.frame: row for row in self._reader.rows}
-        self._pictures = Pictures(options, max(self._frames))
-        self._solved_with = self._reader.header.solve.edits or EditLog()
+        self.film = Film(track)
+        self.info = self.film.info
+        self._pictures = Pictures(options, self.film.frames[-1])
         self.easel = Easel(device, options, (self.info.width, self.info.height))
-        self._replays: OrderedDict[tuple[int, bool], Replays] = OrderedDict()
+        self._replays: OrderedDict[tuple[int, Ground], Replays] = OrderedDict()
         self._fitted: OrderedDict[tuple[int, str], tuple[Worked, Snapshot]] = OrderedDict()
-
-    @property
-    def frames(self) -> list[int]:
-        """Numbers of the frames of the track, ascending."""
-        return list(self._frames)
-
-    @property
-    def shots(self) -> list[int]:
-        """The frames with which shots begin, ascending."""
-        return list(self._reader.shots)
 
     @property
     def number(self) -> int:
@@ -88,9 +94,16 @@ class Session:
             "number": self._journal.number,
             "edits": len(log.edits),
             "edited": list(log.frames),
+            "pending": [shots.first for shots in self.film.pending(log)],
             "canUndo": bool(log.edits),
             "canRedo": self._journal.can_redo,
+            "hasGround": self.film.has_ground,
         }
+
+    @property
+    def log(self) -> EditLog:
+        """The edits in force."""
+        return self._journal.log
 
     def picture(self, frame: int) -> Frame:
         """A frame's picture.
@@ -109,23 +122,35 @@ class Session:
         """
         self._check(frame)
         edits = [edit for edit in self._journal.log.edits if edit.frame == frame]
-        solved = [edit for edit in self._solved_with.edits if edit.frame == frame]
+        solved = [edit for edit in self.film.solved_with.edits if edit.frame == frame]
+        if not solved:
+            return self._replayed(frame, edits, Ground.FILM)
+        if self.film.has_ground:
+            return self._replayed(frame, edits, Ground.KEPT)
         if edits[: len(solved)] == solved:  # the track's frame has them in it
-            return self._replayed(frame, edits[len(solved) :])
-        return self._replayed(frame, edits, bare=True)
+            return self._replayed(frame, edits[len(solved) :], Ground.FILM)
+        return self._replayed(frame, edits, Ground.ANEW)
 
-    def shown(self, frame: int, model: ColorModel | None = None) -> Snapshot:
+    def shown(self, frame: int, model: ColorModel | None = None, view: str = EDITED) -> Snapshot:
         """A frame's mesh, with colours.
 
         Args:
             frame: Its number.
             model: The colour model; the track's if left out.
+            view: One of `VIEWS`.
 
         Raises:
             EditError: If the track holds no such frame.
         """
+        model = model or self.film.model
+        if view != EDITED:
+            self._check(frame)
+            stored = self.film.snapshot(frame, before=view == BEFORE)
+            if model is self.film.model:
+                return stored
+            worked = Worked(stored.mesh, stored.locks)
+            return self.easel.fitted(self.picture(frame), worked, model)
         worked = self.worked(frame)
-        model = model or self._reader.header.model
         known = self._fitted.get((frame, model.name))
         if known is None or known[0] is not worked:
             known = worked, self.easel.fitted(self.picture(frame), worked, model)
@@ -135,23 +160,27 @@ class Session:
             self._fitted.popitem(last=False)
         return known[1]
 
-    def drawn(self, frame: int, look: Look) -> np.ndarray:
-        """A frame as the film shows it, [rows, columns, 3 or 4] uint8.
+    def drawn(self, frame: int, look: Look, view: str = EDITED) -> np.ndarray:
+        """A frame as the output shows it, [rows, columns, 3 or 4] uint8.
 
         Args:
             frame: Its number.
             look: How it is drawn.
+            view: One of `VIEWS`.
 
         Raises:
             EditError: If the track holds no such frame.
         """
-        snapshot = self.shown(frame, look.fitted(self.easel.model))
-        return self.easel.drawn(snapshot, self.picture(frame), look, self.time(frame))
+        snapshot = self.shown(frame, look.fitted(self.easel.model), view)
+        needed = look.needs_source
+        return self.easel.drawn(
+            snapshot, self.picture(frame) if needed else None, look, self.film.time(frame)
+        )
 
-    def time(self, frame: int) -> float:
-        """When a frame is shown [s from the first one]."""
-        row = self._frames[frame]
-        return float(row.pts * self.info.time_base - self.info.start_time)
+    def thumbnail(self, frame: int) -> np.ndarray:
+        """A small picture of a frame of the film, [rows, columns, 3] uint8."""
+        self._check(frame)
+        return self.easel.thumbnail(self.film.snapshot(frame))
 
     def make(self, edits: Sequence[Edit], after: int | None) -> int:
         """Make edits, for good; all of them or none.
@@ -197,31 +226,55 @@ class Session:
         """Release the files."""
         self._pictures.close()
         self._journal.close()
-        self._reader.close()
+        self.film.close()
+
+    def export(self, frame: int, look: Look, output: Path, view: str = EDITED) -> None:
+        """Write a frame, as it is drawn.
+
+        Args:
+            frame: Its number.
+            look: How it is drawn.
+            output: A PNG, which must not exist.
+            view: One of `VIEWS`.
+
+        Raises:
+            OutputError: If it is there, or cannot be written.
+        """
+        if output.suffix.lower() != ".png" or output.exists():
+            reason = "exists already" if output.exists() else "is no name of a PNG"
+            raise OutputError(output, reason, f"give another name, such as frame{frame}.png")
+        write_file(output, encode_still(self.drawn(frame, look, view), "png", None))
+
+    def renewed(self) -> None:
+        """Frames of the track were replaced."""
+        self.film.close()
+        self.film = Film(self.path)
+        self._replays.clear()
+        self._fitted.clear()
 
     def _check(self, frame: int) -> None:
-        if frame not in self._frames:
-            last = max(self._frames)
-            raise EditError(f"frame {frame}: the track holds frames {min(self._frames)} to {last}")
+        if frame not in self.film:
+            first, last = self.film.frames[0], self.film.frames[-1]
+            raise EditError(f"frame {frame}: the track holds frames {first} to {last}")
 
-    def _replayed(self, frame: int, edits: Sequence[Edit], *, bare: bool = False) -> Worked:
+    def _replayed(self, frame: int, edits: Sequence[Edit], ground: Ground) -> Worked:
         """What edits make of a frame's ground.
 
         Args:
             frame: Its number.
             edits: The edits.
-            bare: Whether the ground is the frame before any edit, not as the track has it.
+            ground: On what they are made.
         """
-        key = (frame, bare)
+        key = (frame, ground)
         if key not in self._replays:
-            self._replays[key] = Replays(self._ground(frame, bare=bare))
+            self._replays[key] = Replays(self._ground(frame, ground))
         self._replays.move_to_end(key)
         while len(self._replays) > MOST_FRAMES:
             self._replays.popitem(last=False)
         return self._replays[key].after(edits)
 
-    def _ground(self, frame: int, *, bare: bool) -> Worked:
-        if bare:  # edits with which the track was solved were undone
-            return Worked(self.easel.ground(self.picture(frame), self._reader.header.model).mesh)
-        snapshot = self._reader.snapshot(frame)
+    def _ground(self, frame: int, ground: Ground) -> Worked:
+        if ground is Ground.ANEW:
+            return Worked(self.easel.ground(self.picture(frame), self.film.model).mesh)
+        snapshot = self.film.snapshot(frame, before=ground is Ground.KEPT)
         return Worked(snapshot.mesh, snapshot.locks)

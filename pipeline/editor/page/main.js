@@ -1,6 +1,7 @@
 import { Connection } from "./net/connection.js";
 import { fillPanel } from "./panel/panel.js";
 import { fillRail } from "./panel/rail.js";
+import { Scrubber } from "./time/scrubber.js";
 import { Stage } from "./stage.js";
 import { Keyboard } from "./tools/keyboard.js";
 import { fillHelp } from "./tools/keys.js";
@@ -44,6 +45,12 @@ function tellState(stage) {
 }
 
 /** @param {Stage} stage */
+function tellTime(stage) {
+  element("clock").textContent = String(stage.frame);
+  element("play-icon").setAttribute("d", stage.isPlaying ? "M6 5h4v14H6zM14 5h4v14h-4z" : "M7 5l12 7-12 7z");
+}
+
+/** @param {Stage} stage */
 function tellHint(stage) {
   const picked = stage.picked();
   const tool = TOOLS.find((one) => one.name === stage.tool);
@@ -69,9 +76,15 @@ function tellFacts(stage) {
 function main() {
   let isLost = false;
   const connection = new Connection({
-    tell: (words) => (words.tell === "state" ? stage.setState(words) : toast(words.text)),
+    tell: (words) => {
+      if (words.tell === "state") stage.setState(words);
+      else if (words.tell === "problem") toast(words.text);
+      else film.tell(words);
+      if (words.tell === "done") scrubber.renew();
+    },
     show: (packed) => {
-      stage.show(packed);
+      if (packed.head.kind === "thumb") scrubber.show(packed);
+      else stage.show(packed);
       if (packed.head.kind === "drawn") element("loading").hidden = true;
     },
     lost: () => {
@@ -97,22 +110,39 @@ function main() {
     document.title = `${facts.name} · trimotion`;
     element("name").textContent = facts.name;
     stage.frame = isAgain ? stage.frame : facts.frames[0];
+    Object.assign(stage, { frames: facts.frames, shots: facts.shots, rate: facts.rate, stem: facts.stem });
+    element("time").hidden = facts.frames.length < 2;
+    element("strip").setAttribute("aria-valuemin", String(facts.frames[0]));
+    element("strip").setAttribute("aria-valuemax", String(facts.frames.at(-1)));
     stage.setSize(facts.width, facts.height);
     stage.setState(state);
-    element("where").textContent = facts.frames.length > 1 ? `frame ${stage.frame}` : `${facts.width} × ${facts.height}`;
-    await connection.ask("look", { frame: stage.frame });
+    element("where").textContent = `${facts.width} × ${facts.height}`;
+    await stage.seek(stage.frame);
     await stage.renewCommands();
   }
 
   fillRail(element("tools"), stage);
-  fillPanel(element("panel"), stage);
+  const film = fillPanel(element("panel"), stage);
+  const scrubber = new Scrubber(element("strip"), stage);
   fillHelp(element("keys"));
   new Pointer(stage);
   new Keyboard(stage, element("keys"));
+  addEventListener("keydown", (event) => event.ctrlKey && event.key === "Enter" && film.begin());
+  element("play").addEventListener("click", () => stage.togglePlay());
+  for (const button of /** @type {NodeListOf<HTMLButtonElement>} */ (document.querySelectorAll("#views button"))) {
+    button.addEventListener("click", () => stage.setView(/** @type {any} */ (button.dataset.view)));
+    stage.watch(() => button.setAttribute("aria-pressed", String(button.dataset.view === stage.view)));
+  }
   element("undo").addEventListener("click", () => stage.turn("undo"));
   element("redo").addEventListener("click", () => stage.turn("redo"));
   element("help").addEventListener("click", () => /** @type {HTMLDialogElement} */ (element("keys")).showModal());
   stage.watch(() => tellState(stage));
+  stage.watch(() => tellTime(stage));
+  // who clicks with a hand goes on with keys of the picture, not of the button
+  addEventListener("click", (event) => {
+    const button = /** @type {Element} */ (event.target).closest?.("button");
+    if (event.detail && button instanceof HTMLElement) button.blur();
+  });
   const told = () => {
     tellHint(stage);
     tellFacts(stage);

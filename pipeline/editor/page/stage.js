@@ -1,6 +1,7 @@
 import { Mesh } from "./mesh/mesh.js";
 import { pick } from "./mesh/pick.js";
 import { editOf, planned } from "./tools/plans.js";
+import { Player } from "./time/player.js";
 import { Camera } from "./view/camera.js";
 import { Overlay } from "./view/overlay.js";
 import { Painter } from "./view/painter.js";
@@ -8,7 +9,9 @@ import { Painter } from "./view/painter.js";
 /**
  * @typedef {{x: number, y: number}} Point
  * @typedef {{radius: number, count: number, spread: string}} Brush
- * @typedef {{number: number, edits: number, edited: number[], canUndo: boolean, canRedo: boolean}} State
+ * @typedef {{number: number, edits: number, edited: number[], pending: number[], canUndo: boolean,
+ *   canRedo: boolean, hasGround: boolean}} State
+ * @typedef {"edited" | "solved" | "before"} View
  */
 
 /** How long the pointer rests before the brush shows what it would do [ms]. */
@@ -42,7 +45,19 @@ export class Stage {
     /** @type {Brush} */
     this.brush = { radius: 40, count: 10, spread: "uniform" };
     /** @type {State} */
-    this.state = { number: 0, edits: 0, edited: [], canUndo: false, canRedo: false };
+    this.state = { number: 0, edits: 0, edited: [], pending: [], canUndo: false, canRedo: false, hasGround: true };
+    /** @type {number[]} */
+    this.frames = [0];
+    /** @type {[number, number][]} */
+    this.shots = [[0, 0]];
+    /** @type {number | null} */
+    this.rate = null;
+    this.stem = "frame";
+    /** @type {View} */
+    this.view = "edited";
+    this.player = new Player(this);
+    this.isLooking = false;
+    this.isLookWanted = false;
     /** @type {Mesh | null} */
     this.mesh = null;
     /** @type {Point | null} */
@@ -140,6 +155,54 @@ export class Stage {
       this.painter.setPicture(packed.head.kind, packed);
     }
     this.changed();
+  }
+
+  get isPlaying() {
+    return this.player.isOn;
+  }
+
+  /**
+   * Go to a frame.
+   * @param {number} frame
+   */
+  async seek(frame) {
+    this.frame = frame;
+    this.letGo();
+    this.changed();
+    this.isLookWanted = true;
+    if (this.isLooking) return;
+    this.isLooking = true;
+    try {
+      while (this.isLookWanted) {
+        this.isLookWanted = false;
+        await this.connection.ask("look", { frame: this.frame, view: this.view });
+      }
+    } catch (error) {
+      this.told.problem(/** @type {Error} */ (error).message);
+    } finally {
+      this.isLooking = false;
+    }
+  }
+
+  /** @param {number} by frames */
+  step(by) {
+    const place = this.frames.indexOf(this.frame) + by;
+    this.seek(this.frames[Math.min(this.frames.length - 1, Math.max(0, place))]);
+  }
+
+  pause() {
+    this.player.pause();
+  }
+
+  togglePlay() {
+    if (this.isPlaying) this.pause();
+    else this.player.play();
+  }
+
+  /** @param {View} view */
+  setView(view) {
+    this.view = view;
+    this.seek(this.frame);
   }
 
   /**
@@ -253,6 +316,12 @@ export class Stage {
    * @param {...import("./tools/plans.js").Edit} edits
    */
   make(...edits) {
+    this.pause();
+    if (this.view !== "edited") {
+      this.told.say("Now the frame is shown as your edits leave it: make the edit again.");
+      this.setView("edited");
+      return this.edits;
+    }
     const framed = edits.map(({ edit, ...rest }) => ({ edit, frame: this.frame, ...rest }));
     this.edits = this.edits.then(async () => {
       try {

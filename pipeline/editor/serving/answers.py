@@ -6,7 +6,11 @@ from typing import TYPE_CHECKING, Any
 from pipeline.edit_log.json_lines import log_of
 from pipeline.editor.bench.command_lines import render_line, solve_line
 from pipeline.editor.bench.easel import look_of
+from pipeline.editor.bench.errands import beside
+from pipeline.editor.bench.long_work import Applying, Rendering
+from pipeline.editor.bench.session import VIEWS
 from pipeline.editor.wire.asked import Asked, AskError
+from pipeline.editor.wire.packed import packed_pixels
 from stages.hand import Edit
 
 if TYPE_CHECKING:
@@ -27,14 +31,64 @@ async def hello(window: "Window", asked: Asked) -> Reply:
 
 
 async def look_at(window: "Window", asked: Asked) -> Reply:
-    """Show a frame."""
-    frame = asked.whole("frame")
-    await window.studio.do(window.studio.session.picture, frame)
-    window.frame = frame
-    await window.show_picture()
-    await window.show_mesh()
-    window.want_drawn()
+    """Show a frame, or parts of what is to be seen of it."""
+    frame, view = asked.whole("frame"), asked.text("view", window.view)
+    parts = asked.items("parts", ["picture", "mesh", "drawn"])
+    if view not in VIEWS:
+        raise AskError(f"look: it needs view, one of {', '.join(VIEWS)}")
+    if frame not in window.studio.session.film:
+        await window.studio.do(window.studio.session.picture, frame)  # says what is there
+    window.frame, window.view = frame, view
+    shows = {
+        "picture": window.show_picture,
+        "mesh": window.show_mesh,
+        "drawn": window.show_drawn,
+    }
+    for part in shows.keys() & set(map(str, parts)):
+        await shows[part]()
     return {}
+
+
+async def thumbnail(window: "Window", asked: Asked) -> Reply:
+    """A frame in small."""
+    frame = asked.whole("frame")
+    pixels = await window.studio.do(window.studio.session.thumbnail, frame)
+    window.show(f"thumb {frame}", packed_pixels({"kind": "thumb", "frame": frame}, pixels))
+    return {}
+
+
+async def apply(window: "Window", asked: Asked) -> Reply:
+    """Solve a shot again, or all that wait for it, with the edits in force."""
+    session = window.studio.session
+    log = await window.studio.do(lambda: session.log)
+    pending = session.film.pending(log)
+    if "frame" in asked.values:
+        frame = asked.whole("frame")
+        pending = [shots for shots in session.film.shots if shots.first <= frame <= shots.last]
+    window.studio.begin(Applying(session, pending, log))
+    return {}
+
+
+async def render_film(window: "Window", asked: Asked) -> Reply:
+    """Draw the film to a file beside the track."""
+    session = window.studio.session
+    output = beside(session.path, asked.text("name"))
+    window.studio.begin(Rendering(session, window.look, output))
+    return {"path": str(output)}
+
+
+async def cancel(window: "Window", asked: Asked) -> Reply:
+    """End the long work."""
+    window.studio.cancel()
+    return {}
+
+
+async def export(window: "Window", asked: Asked) -> Reply:
+    """Write the frame, as it is drawn, to a file beside the track."""
+    session = window.studio.session
+    output = beside(session.path, asked.text("name"))
+    await window.studio.do(session.export, window.frame, window.look, output, window.view)
+    return {"path": str(output)}
 
 
 async def style(window: "Window", asked: Asked) -> Reply:
@@ -106,6 +160,11 @@ def _edits(asked: Asked) -> list[Edit]:
 ANSWERS: dict[str, Callable[["Window", Asked], Awaitable[Reply]]] = {
     "hello": hello,
     "look": look_at,
+    "thumbnail": thumbnail,
+    "apply": apply,
+    "render": render_film,
+    "cancel": cancel,
+    "export": export,
     "style": style,
     "edit": edit,
     "ghost": ghost,

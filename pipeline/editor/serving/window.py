@@ -9,6 +9,7 @@ from typing import Any
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from pipeline.editor.bench.easel import look_of
+from pipeline.editor.bench.session import EDITED
 from pipeline.editor.serving.answers import ANSWERS
 from pipeline.editor.serving.guard import shown
 from pipeline.editor.serving.pace import Pace
@@ -32,9 +33,10 @@ class Window:
 
     def __init__(self, socket: WebSocket, studio: Studio) -> None:
         self._socket, self.studio = socket, studio
-        self.frame = studio.session.frames[0]
+        self.frame = studio.session.film.frames[0]
         self.look: Look = look_of(())
         self.styles: list[str] = []
+        self.view = EDITED
         self._words: list[str] = []
         self._pictures: dict[str, bytes] = {}  # the newest of each kind: who is slow misses some
         self._news = asyncio.Event()
@@ -82,29 +84,32 @@ class Window:
 
     async def show_mesh(self) -> None:
         """Show the mesh of the frame."""
-        self.show("mesh", await self.studio.do(self._mesh, self.frame))
+        self.show("mesh", await self.studio.do(self._mesh, self.frame, self.view))
 
     def want_drawn(self) -> None:
         """Have the frame drawn, soon: of what is asked for meanwhile the last counts."""
         self._undrawn.set()
 
-    def _mesh(self, frame: int) -> bytes:
+    async def show_drawn(self) -> None:
+        """Show the frame as the film shows it."""
+        frame = self.frame
+        drawn = await self.studio.do(self.studio.session.drawn, frame, self.look, self.view)
+        self.show("drawn", packed_pixels({"kind": "drawn", "frame": frame}, drawn))
+
+    def _mesh(self, frame: int, view: str) -> bytes:
         session = self.studio.session
-        head = {"frame": frame, "number": session.number}
-        return packed_mesh(head, session.shown(frame))
+        head = {"frame": frame, "number": session.number, "view": view}
+        return packed_mesh(head, session.shown(frame, view=view))
 
     async def _draw(self) -> None:
         """Draw whenever that is wanted."""
         while True:
             await self._undrawn.wait()
             self._undrawn.clear()
-            frame = self.frame
             try:
-                pixels = await self.studio.do(self.studio.session.drawn, frame, self.look)
+                await self.show_drawn()
             except TrimotionError as error:
                 self.tell({"tell": "problem", "text": str(error)})
-                continue
-            self.show("drawn", packed_pixels({"kind": "drawn", "frame": frame}, pixels))
 
     async def _send(self) -> None:
         """Send what there is to tell and to show."""

@@ -1,3 +1,4 @@
+import { FilmPanel } from "../time/film.js";
 import { choice, help, section, slider } from "./rows.js";
 
 /** @typedef {import("../stage.js").Stage} Stage */
@@ -61,5 +62,7 @@ function commandSection(stage) {
  * @param {Stage} stage
  */
 export function fillPanel(panel, stage) {
-  panel.append(viewSection(stage), brushSection(stage), commandSection(stage));
+  const film = new FilmPanel(stage);
+  panel.append(film.element, viewSection(stage), brushSection(stage), commandSection(stage));
+  return film;
 }

@@ -38,6 +38,9 @@ export class Keyboard {
       Enter: () => stage.click("left"),
       Escape: () => stage.letGo(),
       "?": () => help.showModal(),
+      " ": () => stage.togglePlay(),
+      ",": () => stage.step(-1),
+      ".": () => stage.step(1),
     };
     addEventListener("keydown", (event) => this.down(event));
     addEventListener("keyup", (event) => this.shift(event.shiftKey));
@@ -64,7 +67,8 @@ export class Keyboard {
     }
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     if (target instanceof HTMLSelectElement || (target instanceof HTMLInputElement && event.key.length > 1)) return;
-    if (!isOnStage && (event.key === "Enter" || event.key === "Tab" || event.key === " ")) return;
+    if (!isOnStage && (event.key === "Enter" || event.key === "Tab")) return;
+    if (target instanceof HTMLButtonElement && event.key === " ") return;
     if (this.stage.moving && this.type(event)) return;
     if (isOnStage && event.key === "Tab" && !event.shiftKey) {
       event.preventDefault();

@@ -26,6 +26,11 @@ export const HELP = [
     ["Enter", "what a left click does"],
     ["Arrows", "move the cursor (Shift: one pixel)"],
   ]],
+  ["Time", [
+    ["Space", "play and pause"],
+    [", and .", "one frame back and on"],
+    ["Ctrl + Enter", "let the edits reach through their shot"],
+  ]],
   ["View and history", [
     ["Ctrl + Z", "undo"],
     ["Ctrl + Shift + Z", "redo"],
@@ -52,5 +57,6 @@ export function fillHelp(dialog) {
 
 /** @param {string} keys */
 function shown(keys) {
+  if (keys === ", and .") return "<kbd>,</kbd> and <kbd>.</kbd>";
   return keys.split(/( \+ | and | or |, | )/).map((part) => (/^[^ ,]+$/.test(part) && !/^(and|or|on|an|in|a|drag|triangle|vertex|edge|Left|Right|Drag|Middle|Wheel)$/.test(part) ? `<kbd>${part}</kbd>` : part)).join("");
 }

@@ -1,0 +1,42 @@
+/** Frames a second where the source has no times. */
+const USUAL = 25;
+
+/** Plays the film, as it is drawn, in its own time. */
+export class Player {
+  /** @param {import("../stage.js").Stage} stage */
+  constructor(stage) {
+    this.stage = stage;
+    this.isOn = false;
+    this.shown = 0;
+  }
+
+  async play() {
+    const { stage } = this;
+    if (stage.frames.length < 2 || this.isOn) return;
+    this.isOn = true;
+    stage.changed();
+    const rate = stage.rate ?? USUAL;
+    const start = stage.frames.indexOf(stage.frame);
+    const from = start + 1 < stage.frames.length ? start : 0;
+    const begun = performance.now();
+    while (this.isOn) {
+      const due = from + Math.floor(((performance.now() - begun) * rate) / 1000);
+      if (due >= stage.frames.length) break;
+      const frame = stage.frames[due];
+      if (frame !== stage.frame) {
+        stage.frame = frame;
+        const parts = stage.opacities.mesh > 0 ? ["drawn", "mesh"] : ["drawn"];
+        await stage.connection.ask("look", { frame, view: stage.view, parts }).catch(() => (this.isOn = false));
+        this.shown += 1;
+        stage.changed();
+      }
+      await new Promise((done) => requestAnimationFrame(done));
+    }
+    this.isOn = false;
+    await stage.seek(stage.frame);
+  }
+
+  pause() {
+    this.isOn = false;
+  }
+}
