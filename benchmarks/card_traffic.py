@@ -42,11 +42,28 @@ class Watch:
     def __init__(self) -> None:
         self.calls: Counter[str] = Counter()
         self.frames: dict[str, list[Counter[str]]] = {"solved": [], "drawn": []}
-        self._count(Workspace, "iterate", ROUNDS, lambda *given, **named: 1)
+        self.rounds: list[Counter[str]] = []
+        self._begun: Counter[str] | None = None
+        self._begin_rounds()
         self._count(Staging, "write", WRITES, lambda *given, **named: 1)
         self._count(Staging, "read", READS, lambda staging, wanted: len(wanted))
         self._note(Triangulator, "next", "solved", lambda owner: owner._device)
         self._note(Renderer, "render", "drawn", lambda owner: owner._canvas.device)
+
+    def _begin_rounds(self) -> None:
+        """Note what happens from one call of the optimiser to the next."""
+        inner = Workspace.iterate
+
+        @wraps(inner)
+        def counted(workspace: Workspace, *given: Any, **named: Any) -> None:
+            now = self.calls + workspace.device.traffic
+            if self._begun is not None:
+                self.rounds.append(now - self._begun)
+            self._begun = now
+            self.calls[ROUNDS] += 1
+            inner(workspace, *given, **named)
+
+        setattr(Workspace, "iterate", counted)  # noqa: B010
 
     def _count(self, owner: Any, method: str, name: str, many: Callable[..., int]) -> None:
         """Count calls of a method."""
@@ -66,6 +83,7 @@ class Watch:
         @wraps(inner)
         def noted(this: Any, *given: Any, **named: Any) -> Any:
             before = self.calls + device_of(this).traffic
+            self._begun = None
             result = inner(this, *given, **named)
             self.frames[kind].append(self.calls + device_of(this).traffic - before)
             return result
@@ -103,17 +121,14 @@ def main(arguments: Sequence[str] | None = None) -> None:
     solved, drawn = watch.frames["solved"], watch.frames["drawn"][1:]
     rounds = median(frame[ROUNDS] for frame in solved)
     _print(f"a later frame solved, {rounds:g} rounds", solved)
-    _print("a round of it", solved, per_round=True)
+    _print("a round, from one call of the optimiser to the next", watch.rounds)
     _print("a frame drawn", drawn)
 
 
-def _print(what: str, frames: Sequence[Counter[str]], *, per_round: bool = False) -> None:
+def _print(what: str, frames: Sequence[Counter[str]]) -> None:
     """A line of medians."""
-    cells = [
-        median(frame[head] / (max(1, frame[ROUNDS]) if per_round else 1) for frame in frames)
-        for head in HEADS
-    ]
-    print(f"| {what} | " + " | ".join(f"{cell:.1f}".removesuffix(".0") for cell in cells) + " |")
+    cells = [median(frame[head] for frame in frames) for head in HEADS]
+    print(f"| {what} | " + " | ".join(f"{cell:g}" for cell in cells) + " |")
 
 
 if __name__ == "__main__":

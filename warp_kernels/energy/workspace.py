@@ -179,9 +179,8 @@ class Workspace:
         self.placed, self._fitted, self._seen = None, False, None
         self._displace(displacement)
         self.device.write(self._controls, np.array([trust, regularity, dead_band]))
-        there, back = (
-            [self._moments[front], self._energy, self._descents[front]] for front in (0, 1)
-        )
+        steps = zip(self._moments, self._descents, strict=True)
+        there, back = ([moments, self._energy, descent] for moments, descent in steps)
         if times and self._front == 1:
             self.device.run(back)
             self._front, times = 0, times - 1
@@ -202,8 +201,8 @@ class Workspace:
     def energies(self) -> np.ndarray:
         """E of all thirteen variants of every triangle as it stands, 1 px apart, [T, 13]."""
         self._displace(DISPLACEMENT)
-        self._seen = None
         self.device.run([self._moments[self._front], self._energy])
+        self._seen = None
         return self.device.read(self._energies, self._counts[1])
 
     def last_energy(self) -> float:
