@@ -1,21 +1,33 @@
 """The emulated card and the CPU agree to the bit; run by `make cuda-check`, not with the suite."""
 
 from pathlib import Path
+from threading import Thread
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
+import warp as wp
 
 from pipeline.loop.animate import animate
 from pipeline.progress import Progress
 from stages.media import open_decoder
+from stages.render import Renderer
 from stages.topology.refine_options import RefineOptions
 from stages.triangulate_options import TriangulateOptions
 from tests import media_samples as samples
 from tests.jobs import job_of
-from tests.kernel_samples import noise, poisoned_workspace, random_mesh, random_weights
+from tests.kernel_samples import (
+    noise,
+    poisoned_workspace,
+    random_mesh,
+    random_weights,
+    snapshot_of,
+)
 from warp_kernels.color_model import COLOR_MODELS
 from warp_kernels.device.device import Device
+from warp_kernels.device.phase import Phase
+from warp_kernels.device.staging import Rows
 from warp_kernels.energy.sums import SUMS
 from warp_kernels.energy.topology_survey import Survey
 from warp_kernels.energy.workspace import Workspace
@@ -92,3 +104,75 @@ def test_clips(style: str, device: str, tmp_path: Path) -> None:
     expected, actual = (film(tmp_path, name, **look) for name in ("cpu", device))
     off = np.abs(actual.astype(int) - expected).max()
     assert off <= INEXACT.get(style, 0)
+
+
+def test_two_threads_share_a_card(device: str) -> None:
+    """One solves meshes that grow, so that it captures again and again, and the other draws."""
+    shared, errors = Device(device), []
+    mesh = random_mesh(*SIZE, 60)
+    snapshot = snapshot_of(shared, noise(*SIZE), mesh, COLOR_MODELS["linear"])
+    renderer = Renderer(shared, SIZE, SIZE, (STYLES["flat"](),))
+    expected = renderer.render(snapshot)
+
+    def draw() -> None:
+        """Draw the same again and again."""
+        try:
+            for _ in range(20):
+                np.testing.assert_array_equal(renderer.render(snapshot), expected)
+        except BaseException as error:
+            errors.append(error)
+
+    drawing = Thread(target=draw)
+    drawing.start()
+    for number in range(12):
+        grown = random_mesh(*SIZE, 20 + 20 * number)
+        workspace = poisoned_workspace(shared, noise(*SIZE), grown, COLOR_MODELS["constant"])
+        workspace.hold(np.zeros((grown.vertex_count, 3)))
+        workspace.iterate(3, trust=0.5, regularity=1e-3)
+        workspace.fit()
+    drawing.join()
+    assert not errors
+
+
+class Intruder:
+    """A launch during whose capture a copy is made."""
+
+    def __init__(self, device: Device) -> None:
+        self._device = device
+        self.bounds = SimpleNamespace(size=1)
+
+    def launch(self) -> None:
+        """Copy something instead."""
+        array = self._device.empty(4, int)
+        self._device.write(array, np.zeros(4))
+        self._device.read(array, 4)
+
+
+def test_a_copy_during_a_capture_is_found(device: str) -> None:
+    """By the emulated card, as by a real one."""
+    shared = Device(device)
+    phase = Phase([Intruder(shared)], lambda number, begin, end: None, 1, 1)
+    with pytest.raises(RuntimeError, match="captured"):
+        shared.run([phase])
+
+
+def test_staged_copies_keep_their_order(device: str) -> None:
+    """What is written last stands, whatever waits; columns and rows are read as they lie."""
+    card = Device(device)
+    first, second = card.empty((300, 13), wp.float64), card.empty(1000, wp.vec3i)
+    card.write(first, np.zeros((300, 13)))
+    card.write(first, np.ones((10, 13)))
+    card.write(first, np.full((5, 13), 2.0))
+    threes = np.arange(3000).reshape(1000, 3)
+    card.write(second, threes)
+    column, rows, some = card.read_all(
+        [Rows(first, 20, column=4), Rows(second, 1000), Rows(first, 6)]
+    )
+    np.testing.assert_array_equal(column, [2.0] * 5 + [1.0] * 5 + [0.0] * 10)
+    np.testing.assert_array_equal(rows, threes)
+    np.testing.assert_array_equal(some[:, 12], [2.0] * 5 + [1.0])
+    large = card.empty((700, 700), wp.vec3ub)
+    picture = noise(700, 700)
+    card.write(large, picture)
+    np.testing.assert_array_equal(card.read(large, 700), picture)
+    assert len(card.read(second, 0)) == 0

@@ -15,6 +15,7 @@ import sys
 from collections.abc import Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from threading import get_ident
 from typing import Any
 
 import warp as wp
@@ -86,6 +87,7 @@ class EmulatedLauncher:
         self._device = device
         self._awaited: dict[Any, None] = {}
         self._tape: list[Graph] | None = None
+        self._capturing: int | None = None
 
     def expect(self, kernels: Iterable[Any]) -> None:
         """Name kernels that will be recorded."""
@@ -101,12 +103,13 @@ class EmulatedLauncher:
 
     def capture(self, launches: Sequence[Any]) -> Graph:
         """Note the launches, each with its size, instead of making them."""
-        self._tape = tape = []
+        tape: list[Graph] = []
+        self._tape, self._capturing = tape, get_ident()
         try:
             for launch in launches:
                 launch.launch()
         finally:
-            self._tape = None
+            self._tape = self._capturing = None
 
         def replay() -> None:
             """Make them, one after the other."""
@@ -116,11 +119,28 @@ class EmulatedLauncher:
         return replay
 
     def make(self, launch: Graph) -> None:
-        """Make a launch, or note it while a sequence is captured."""
+        """Make a launch, or note it while a sequence is captured.
+
+        Raises:
+            RuntimeError: If another thread captures: a card would end both with error 906.
+        """
+        if self._capturing not in (None, get_ident()):
+            raise RuntimeError("a launch while another thread captures")
         if self._tape is None:
             launch()
         else:
             self._tape.append(launch)
+
+    def copy(self, target: wp.array, source: wp.array, size: int) -> None:
+        """Copy bytes.
+
+        Raises:
+            RuntimeError: If a sequence is being captured: a card would end it with error 906.
+        """
+        if self._capturing is not None:
+            raise RuntimeError("a copy while a sequence is captured")
+        with WARP:
+            wp.copy(target, source, count=size)
 
 
 class EmulatedLaunch:

@@ -24,6 +24,9 @@ class Launcher(Protocol):
     def capture(self, launches: Sequence[Any]) -> Graph:
         """A sequence of launches, each with the size that it has now."""
 
+    def copy(self, target: wp.array, source: wp.array, size: int) -> None:
+        """Copy bytes between host and device, without waiting; never during a capture."""
+
 
 class WarpLauncher:
     """Launches by Warp, on the CPU or on CUDA.
@@ -59,3 +62,8 @@ class WarpLauncher:
             wp.capture_launch(graph)
 
         return replay
+
+    def copy(self, target: wp.array, source: wp.array, size: int) -> None:
+        """Copy bytes; they arrive later if the host's side is pinned."""
+        with WARP:
+            wp.copy(target, source, count=size)

@@ -136,7 +136,7 @@ class Staging:
         """Copy bytes, without waiting where one of the two is pinned."""
         if size:
             self._traffic[counted] += 1
-            wp.copy(target, source, count=size)
+            self._launcher.copy(target, source, size)
 
     def _move(self, launch: Any, rows: Sequence[tuple[int, ...]]) -> None:
         """Launch a kernel that spreads or gathers."""
