@@ -20,6 +20,7 @@ import numpy as np
 import warp as wp
 
 from warp_kernels.device.barrier import STRIDE, meet
+from warp_kernels.device.card_memory import memory_problem
 from warp_kernels.device.kernel_cache import settle_cache
 from warp_kernels.device.kernels import Told, tell_nobody
 from warp_kernels.device.launcher import Launcher, WarpLauncher
@@ -27,6 +28,7 @@ from warp_kernels.device.phase import SMALLEST_PART, Phase
 from warp_kernels.device.runtime import EMULATED, WARP, find_device, unused_card
 from warp_kernels.device.staging import LAUNCHES, Rows, Staging
 from warp_kernels.device.team import Team
+from warp_kernels.errors import TrimotionError
 
 
 class Device:
@@ -57,6 +59,7 @@ class Device:
         self._launcher = _emulated(self.warp) if emulated else WarpLauncher(self.warp, tell)
         if self.part_count > 1:
             self._launcher.expect([meet])
+        self._taken = 0
         self.traffic: Counter[str] = Counter()
         """Copies, launches and waits so far, on a card."""
         self._staging = self._new_staging() if self.is_cuda else None
@@ -142,9 +145,23 @@ class Device:
                 raise
 
     def empty(self, shape: Any, dtype: Any) -> wp.array:
-        """A new device array; only workspaces ask for one."""
+        """A new device array; only workspaces ask for one.
+
+        Raises:
+            TrimotionError: If a card has no memory left.
+        """
         with WARP:
-            return wp.empty(shape, dtype=dtype, device=self.warp)
+            try:
+                array = wp.empty(shape, dtype=dtype, device=self.warp)
+            except RuntimeError as error:  # all that Warp says of a full card
+                if not self.warp.is_cuda:
+                    raise
+                asked = int(np.prod(shape)) * wp.types.type_size_in_bytes(dtype)
+                free = int(self.warp.free_memory)
+                problem = memory_problem(self.name, self._taken, asked, free)
+                raise TrimotionError(problem) from error
+            self._taken += array.size * wp.types.type_size_in_bytes(array.dtype)
+            return array
 
     def clear(self, array: wp.array) -> None:
         """Fill a device array with zeros."""
