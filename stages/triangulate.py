@@ -11,16 +11,14 @@ from stages.mesh import Mesh
 from stages.motion.advect import Carried
 from stages.motion.boiling import Unrest
 from stages.motion.springs import springs_of
-from stages.optimize import load_mesh, optimize, place_mesh
+from stages.optimize import load_mesh, optimize
 from stages.snapshot import Snapshot
 from stages.solve.approximate import Approximator
 from stages.solve.bench import Bench
-from stages.solve.color_limits import Limiter
-from stages.solve.color_owners import color_owners
+from stages.solve.fitting import Fitting
 from stages.solve.hold import Hold
 from stages.solve.pace import BOILING, CALM
 from stages.solve.quality import FALL, Trial, smallest_that_reaches
-from stages.solve.steady_colors import steadied
 from stages.spaces import SPACES
 from stages.topology import TOPOLOGIES
 from stages.topology.appraise import Appraiser
@@ -85,9 +83,11 @@ class Triangulator:
         self._locks = NO_LOCKS
         self._use(self._even)
         self._solved: Snapshot | None = None  # with energies by the colours that are optimised
-        shared = fitted is options.model and options.space == "rgb"
-        self._fitting = self._workspace if shared else Workspace(device, size, fitted)
-        self._limiter = Limiter(self._fitting)
+        of_error = self._workspace if options.space == "rgb" else None
+        self._own = Fitting(of_error or Workspace(device, size, options.model))
+        """Colours of the optimised model: what decides on meshes must not hang on what is drawn."""
+        is_own = fitted is options.model
+        self._drawn = self._own if is_own else Fitting(Workspace(device, size, fitted))
 
     def _bench(self, *, weighted: bool) -> Bench:
         """Make what pictures with weights, or those without, are worked on with."""
@@ -144,8 +144,7 @@ class Triangulator:
 
         def torn(mesh: Mesh) -> np.ndarray:
             """The triangles that no one colour becomes."""
-            self._snapshot(frame, mesh)
-            return self._limiter.torn
+            return self._own.torn(frame, mesh)
 
         if refine.quality is None:
             mesh = attempt(refine.triangles).mesh
@@ -167,10 +166,21 @@ class Triangulator:
             bench = self._weighted
             bench.load(pixels, frame.weights)
         self._use(bench)
-        if self._fitting is not self._even.workspace:
-            self._fitting.load_image(frame.pixels)
+        self._load_for_colors(frame)
 
-    def next(self, frame: Frame, seed: Carried, earlier: Snapshot | None = None) -> Snapshot:
+    def _load_for_colors(self, frame: Frame) -> None:
+        """Take in a picture in RGB wherever colours are fitted but nothing is optimised."""
+        for workspace in {self._own.workspace, self._drawn.workspace} - {self._even.workspace}:
+            workspace.load_image(frame.pixels)
+
+    def next(
+        self,
+        frame: Frame,
+        seed: Carried,
+        earlier: Snapshot | None = None,
+        *,
+        renewed: bool = False,
+    ) -> Snapshot:
         """Triangulate a frame that continues a shot.
 
         Args:
@@ -178,11 +188,13 @@ class Triangulator:
             seed: The previous frame's mesh, carried along by the motion.
             earlier: What was given for the previous frame, here or to `recall`: by it is told where
                 the picture boils, and colours keep to its; None for neither.
+            renewed: Whether all that is not held is refined anew, for other errors count now.
         """
         self._lock(seed.locks)
         self._load(frame)
         spring = SPRING * self._rmse(seed.mesh) ** 2
-        unrest = None if self._hold.share else self._unrest(seed, earlier)
+        unrest = Unrest.everywhere(seed.mesh) if renewed else self._unrest(seed, earlier)
+        unrest = None if self._hold.share else unrest
         pace = CALM if unrest is None else BOILING
         rounds, each = pace.spread(0 if self._hold.is_full else self._options.frame_iterations)
         convergence = pace.watch()
@@ -246,11 +258,12 @@ class Triangulator:
             frame: The frame.
             mesh: What it became before.
         """
-        if self._fitting is self._even.workspace:
+        workspace = self._drawn.workspace
+        if workspace is self._even.workspace:
             self._even.load(frame.pixels)
         else:
-            self._fitting.load_image(frame.pixels)
-        return self._snapshot(frame, mesh)
+            workspace.load_image(frame.pixels)
+        return self._drawn.snapshot(frame, mesh, locks=self._locks)
 
     def recall(self, frame: Frame, snapshot: Snapshot) -> None:
         """Take up a solution that another run began; `next` goes on from there.
@@ -317,9 +330,10 @@ class Triangulator:
             count = goal.count
         mesh = layout.build(frame.pixels, max(2, count), rng)
         mesh = self._approximator.approximate(mesh, goal)
-        if self._options.refine.quality is None or self._fitting is not self._even.workspace:
+        is_rgb = self._own.workspace is self._even.workspace
+        if self._options.refine.quality is None or not is_rgb:
             return Trial(mesh, self._rmse(mesh))
-        return Trial(mesh, self._snapshot(frame, mesh).rmse)  # moved colours cost a little
+        return Trial(mesh, self._own.snapshot(frame, mesh).rmse)  # moved colours cost a little
 
     def _rmse(self, mesh: Mesh) -> float:
         """Root mean square error per channel, of all pixels alike [code values of the space]."""
@@ -333,31 +347,9 @@ class Triangulator:
 
     def _solution(self, frame: Frame, mesh: Mesh, earlier: Snapshot | None = None) -> Snapshot:
         """The snapshot of a mesh that was just optimised, and that the next frame starts from."""
-        snapshot = self._snapshot(frame, mesh, earlier)
+        snapshot = self._drawn.snapshot(frame, mesh, earlier, self._locks)
         self._solved = replace(snapshot, energies=self._even.appraiser.energies(mesh))
         return snapshot
-
-    def _snapshot(self, frame: Frame, mesh: Mesh, earlier: Snapshot | None = None) -> Snapshot:
-        """Fit the colours to a mesh that was just optimised, by all pixels alike."""
-        fitting = self._fitting
-        place_mesh(fitting, mesh)
-        coefficients, energies, counts = fitting.fit()
-        if earlier is not None:
-            coefficients, energies = steadied(earlier, mesh, counts, coefficients, energies)
-        coefficients, energies, limits = self._limiter.limit(mesh, coefficients, energies)
-        owners = color_owners(mesh, counts)
-        return Snapshot(
-            frame_index=frame.index,
-            pts=frame.pts,
-            time_base=frame.time_base,
-            mesh=mesh,
-            model=fitting.model,
-            coefficients=coefficients[owners],
-            energies=energies,
-            counts=counts,
-            limits=None if limits is None else limits[owners],
-            locks=self._locks.within(mesh),
-        )
 
 
 def _against(options: TriangulateOptions, scale: float) -> TriangulateOptions:

@@ -38,6 +38,7 @@ IMPORT_HOMES = {
     "tomllib": ("pipeline/",),
     "tqdm": ("pipeline/",),
     "starlette": ("pipeline/editor/serving/",),
+    "distributed": ("pipeline/farm/cluster/",),
     "uvicorn": ("pipeline/editor/serving/",),
 }
 """Beginnings of the paths that may import a package; a package without a line is free."""
@@ -45,7 +46,7 @@ IMPORT_HOMES = {
 RUNTIME_PACKAGES = frozenset({"warp", "numpy", "scipy", "cv2", "av", "tqdm"})
 """Import names of the run-time dependencies."""
 
-EXTRA_PACKAGES = frozenset({"ezdxf", "pxr", "starlette", "uvicorn"})
+EXTRA_PACKAGES = frozenset({"distributed", "ezdxf", "pxr", "starlette", "uvicorn"})
 """Import names of what extras install; it is imported only where it is used."""
 
 ALLOCATING_FILES = frozenset({"warp_kernels/energy/workspace.py", "warp_kernels/device/device.py"})

@@ -90,7 +90,7 @@ def test_a_log_leaves_meshes_valid_and_comes_back_to_the_bit(seed: int, edits: l
 
 
 def test_every_kind_is_in_the_registry_and_begins_with_its_frame() -> None:
-    assert len(EDITS) == 13
+    assert len(EDITS) == 14
     for name in EDITS:
         assert next(iter(EDITS[name].__dataclass_fields__)) == "frame"  # type: ignore[attr-defined]
 

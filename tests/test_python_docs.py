@@ -1,4 +1,4 @@
-"""The examples of docs/python.md and of the README's section run and leave nothing behind."""
+"""The examples of docs/python.md, docs/data.md and the README run and leave nothing behind."""
 
 import re
 from pathlib import Path
@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
-PAGES = ("docs/python.md", "README.md")
+PAGES = ("docs/python.md", "docs/data.md", "README.md")
 
 
 def examples(page: str) -> list[str]:

@@ -17,7 +17,7 @@ from stages.triangulate_options import TriangulateOptions
 from stages.validate import assert_valid
 from tests.kernel_samples import frame_of, noise, waves
 from tests.test_layouts import DRAWN
-from warp_kernels.color_model import COLOR_MODELS, LINEAR
+from warp_kernels.color_model import COLOR_MODELS, LINEAR, QUADRATIC
 from warp_kernels.device.device import Device
 from warp_kernels.errors import OptionError
 
@@ -107,6 +107,29 @@ def test_drawn_model_with_more_terms_is_fitted(device: str) -> None:
     np.testing.assert_array_equal(snapshot.mesh.vertices, plain.mesh.vertices)
     assert snapshot.model is LINEAR
     assert snapshot.rmse < plain.rmse
+
+
+@pytest.mark.parametrize(
+    "given", [{}, {"space": "oklab"}, {"refine": RefineOptions(quality=60.0)}], ids=str
+)
+def test_mesh_does_not_hang_on_what_is_drawn(given: dict, device: str) -> None:
+    """Triangles that no one colour becomes are divided whatever colours will be shown there."""
+    y, x = np.indices((HEIGHT, WIDTH))
+    spots = np.full((HEIGHT, WIDTH, 3), (20, 60, 230), np.uint8)
+    for left, top, radius in np.random.default_rng(1).uniform(
+        (0, 0, 6), (WIDTH, HEIGHT, 18), (14, 3)
+    ):
+        spots[(x - left) ** 2 + (y - top) ** 2 < radius**2] = (250, 40 * (radius > 12), 20)
+    pictures = [spots, np.roll(spots, 1, axis=1)]
+    meshes = []
+    for drawn in (None, LINEAR, QUADRATIC):
+        work = Triangulator(Device(device), (WIDTH, HEIGHT), options(60, **given), drawn)
+        first = work.first(frame_of(pictures[0]), LAYOUTS["grid"](), np.random.default_rng(5))
+        later = work.next(frame_of(pictures[1]), standing(first.mesh), first)
+        meshes.append((first.mesh, later.mesh))
+    for constant, other in zip(meshes[0] * 2, meshes[1] + meshes[2], strict=True):
+        np.testing.assert_array_equal(constant.vertices, other.vertices)
+        np.testing.assert_array_equal(constant.triangles, other.triangles)
 
 
 def same(first: Snapshot, second: Snapshot) -> bool:

@@ -48,9 +48,11 @@ def _animate(arguments: argparse.Namespace) -> "Animated":
     job = _job(arguments)
     with progress_for(arguments) as progress:
         with importing():
+            from pipeline.farm.runners import runner_for
             from pipeline.loop.animate import animate
 
-        return _tell(progress, animate(job, progress), job.output.path)
+        result = animate(job, progress, runner_for(job.run))
+        return _tell(progress, result, job.output.path)
 
 
 def _solve(arguments: argparse.Namespace) -> "Animated":
@@ -59,9 +61,11 @@ def _solve(arguments: argparse.Namespace) -> "Animated":
     job = with_course(solve_job(arguments))
     with progress_for(arguments) as progress:
         with importing():
+            from pipeline.farm.runners import runner_for
             from pipeline.loop.animate import solve
 
-        result = solve(job.solve, job.output, job.run, progress)
+        runner = runner_for(job.run)
+        result = solve(job.solve, job.output, job.run, progress, runner=runner)
         return _tell(progress, result, job.output.track)
 
 

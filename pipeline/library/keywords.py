@@ -86,6 +86,7 @@ class SolveKeywords(AnimatorKeywords, SourceKeywords, total=False):
     audio_offset: float
     edits: Any
     jobs: int
+    cluster: str | None
     overwrite: bool
     resume: bool
 

@@ -47,9 +47,10 @@ def animate(
     """
     job = _job("animate", source, options, output=file_name("output", output))
     with progress_for(progress) as told, explained_loss(job.run.jobs):
+        from pipeline.farm.runners import runner_for
         from pipeline.loop.animate import animate as run
 
-        return _result(run(job, told), job.output.path, told)
+        return _result(run(job, told, runner_for(job.run)), job.output.path, told)
 
 
 @with_keywords("solve")
@@ -72,11 +73,13 @@ def solve(
     fixed = {"track": file_name("output", output), "styles": (), "regions": (), "moves": ()}
     job = _job("solve", source, options, **fixed)
     with progress_for(progress) as told, explained_loss(job.run.jobs):
+        from pipeline.farm.runners import runner_for
         from pipeline.loop.animate import solve as run
         from pipeline.timeline.mesh_course import with_course
 
         job = with_course(job)
-        return _result(run(job.solve, job.output, job.run, told), job.output.track, told)
+        solved = run(job.solve, job.output, job.run, told, runner=runner_for(job.run))
+        return _result(solved, job.output.track, told)
 
 
 @with_keywords("render")

@@ -7,6 +7,7 @@ from collections.abc import Generator, Iterable, Iterator, Sequence
 from contextlib import closing, nullcontext
 from time import perf_counter
 
+from pipeline.edit_log.focus import focus_reached
 from pipeline.envelope import MeshFrom, Prepared, Solved
 from pipeline.look.drawing import Drawing
 from pipeline.look.exporting import Exporting
@@ -29,6 +30,7 @@ from pipeline.track.resume import Past, open_track, past_of
 from stages.masks.weight_maps import WeightMap
 from stages.media import Decoder, MediaInfo
 from stages.media.expected_frames import expected_frames
+from stages.motion.painted_focus import NOTHING_PAINTED
 from stages.triangulate import Triangulator
 from warp_kernels.color_model import ColorModel
 from warp_kernels.device.device import Device
@@ -153,7 +155,8 @@ def solved_frames(
     """
     snapshot = None if past is None else past.snapshot
     if options.edits is not None and options.edits.edits:
-        edited = EditedFrames(triangulator, options, snapshot, keeps=keeps)
+        focus = NOTHING_PAINTED if past is None else focus_reached(options.edits, past.track)
+        edited = EditedFrames(triangulator, options, snapshot, focus=focus, keeps=keeps)
         yield from edited.solved(found)
         if refused is not None:
             refused += edited.refused

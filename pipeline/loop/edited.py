@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from pipeline.edit_log.focus import followed_focus
 from pipeline.envelope import MeshFrom, Prepared, Solved
 from pipeline.loop.solution import followed
 from pipeline.options.edit_log import EditLog
@@ -23,6 +24,7 @@ from stages.hand.worked import Worked
 from stages.media.set_aside import ROOM, AsideFrame, SetAside
 from stages.motion.advect import Carried
 from stages.motion.meeting import Meeting
+from stages.motion.painted_focus import NOTHING_PAINTED, PaintedFocus
 from stages.snapshot import Snapshot
 from stages.triangulate import Triangulator
 
@@ -59,6 +61,7 @@ class EditedFrames:
         triangulator: Made for the options.
         options: Say how frames begin, and what the edits are.
         before: What the last frame of an earlier run became, or None.
+        focus: What was painted in its shot up to there, followed to it.
         keeps: Whether what draws the frames needs their pictures.
         room: Bytes of pictures that wait in memory for an edited frame; others wait in a file.
     """
@@ -69,6 +72,7 @@ class EditedFrames:
         options: SolveOptions,
         before: Snapshot | None,
         *,
+        focus: PaintedFocus = NOTHING_PAINTED,
         keeps: bool,
         room: int = ROOM,
     ) -> None:
@@ -79,6 +83,9 @@ class EditedFrames:
         self._waiting: list[_Found] = []
         self._has_edited = False  # whether a frame of the shot was edited before
         self._snapshot = before
+        self._before = focus
+        self._focus = NOTHING_PAINTED  # as the frame that was solved last has it
+        self._settled = NOTHING_PAINTED  # as the last final frame has it, followed by final frames
         self.refused: list[str] = []
         """What could not be made, one sentence for each edit."""
 
@@ -94,6 +101,7 @@ class EditedFrames:
                 if ready.shot != shot:
                     yield from self._given()
                     shot, self._has_edited = ready.shot, False
+                    self._focus = self._settled = NOTHING_PAINTED
                 yield from self._next(ready)
             yield from self._given()
         finally:
@@ -101,9 +109,12 @@ class EditedFrames:
 
     def _next(self, ready: Prepared) -> Iterator[Solved]:
         """Solve the next frame of a shot, and hand on what is final by that."""
-        self._snapshot = followed(self._triangulator, self._options, ready, self._snapshot)
+        focus = self._focus
+        self._snapshot = followed(self._triangulator, self._options, ready, self._snapshot, focus)
         if ready.mesh_from is MeshFrom.TRACK:
+            self._focus = self._settled = self._before
             return
+        self._focus = focus.followed(self._snapshot)
         index = ready.frame.index
         self._waiting.append(_Found(ready.shot, self._aside.put(ready.frame), self._snapshot))
         if index in self._log.frames:
@@ -115,7 +126,7 @@ class EditedFrames:
         """Hand on what waits: it is final."""
         for left, one in zip(range(len(self._waiting))[::-1], self._waiting, strict=True):
             yield replace(one.solved(keeps_picture=self._keeps), has_more=left > 0)
-        self._waiting = []
+        self._waiting, self._settled = [], self._focus
         self._aside.clear()
 
     def _edit(self) -> Iterator[Solved]:
@@ -127,22 +138,32 @@ class EditedFrames:
         self.refused += replayed.refused
         if replayed.worked is begun:
             return
-        snapshot = self._triangulator.next(frame, Carried.by_hand(replayed.worked))
-        made = snapshot.locks.but_for(begun.locks)
+        worked = replayed.worked
+        weighed = self._focus.weighed(frame, worked.mesh, worked.focus)
+        by_hand, renewed = Carried.by_hand(worked), bool(worked.focus)
+        snapshot = self._triangulator.next(weighed, by_hand, renewed=renewed)
+        self._focus = self._focus.followed(snapshot).with_strokes(snapshot, worked.focus)
+        # what counts elsewhere than before makes other triangles, and these are not held
+        made = None if worked.focus else snapshot.locks.but_for(begun.locks)
         here = replace(here, snapshot=snapshot)
         self._waiting = [*self._reached_back(here, self._waiting[:-1], made), here]
         here = self._resumed(here)
         self._waiting[-1] = here
         self._has_edited, self._snapshot = True, here.snapshot
+        self._focus = followed_focus(
+            self._settled, self._log, (one.snapshot for one in self._waiting)
+        )
         yield from self._given()
 
-    def _reached_back(self, edited: _Found, before: Sequence[_Found], made: Locks) -> list[_Found]:
+    def _reached_back(
+        self, edited: _Found, before: Sequence[_Found], made: Locks | None
+    ) -> list[_Found]:
         """Let the edits of a frame reach back: to the shot's begin, or half way to others.
 
         Args:
             edited: The frame.
             before: Those before it that are not final, in order.
-            made: What its own edits hold fast.
+            made: What its own edits hold fast, if all else shall stay as it was solved.
         """
         if not self._has_edited:
             return self._backwards(edited, before)
@@ -185,7 +206,7 @@ class EditedFrames:
             made: What edits of the frame hold fast, if all else shall stay as it was solved.
         """
         later, snapshot, again = edited.aside.frame(), edited.snapshot, []
-        view = View(later.pixels)
+        view, focus = View(later.pixels), self._focus
         for one in reversed(before):
             frame = one.aside.frame()
             earlier = View(frame.pixels)
@@ -193,10 +214,10 @@ class EditedFrames:
             is_same = passage.is_still and _weigh_alike(frame, later)
             mesh_from = MeshFrom.SAME_PICTURE if is_same else passage
             ready = Prepared(one.shot, frame, mesh_from)
-            snapshot = followed(self._triangulator, self._options, ready, snapshot)
+            snapshot = followed(self._triangulator, self._options, ready, snapshot, focus)
             if made is not None:
                 snapshot = self._but_for(made, one, frame, snapshot)
-            later, view = frame, earlier
+            later, view, focus = frame, earlier, focus.followed(snapshot)
             again.append(replace(one, snapshot=snapshot))
         return again[::-1]
 

@@ -111,10 +111,10 @@ _HEARD = ("audio_mode", "audio_offset", "beats")
 _SOLVED_WITH = ("overwrite", "resume", *_HEARD)
 """Options of an output that a track has, and those that say what a timeline hears."""
 
-_NOT_EDITED = ("track", "resume", "overwrite", "loop", "timeline", *_HEARD)
+_NOT_EDITED = ("track", "resume", "overwrite", "loop", "timeline", "cluster", *_HEARD)
 """Options that mean nothing for a track that is edited."""
 
-_ONCE = ("jobs", "resume", "loop")
+_ONCE = ("jobs", "cluster", "resume", "loop")
 """Options of one run that solves all."""
 
 _LOOKED_AT = ("styles", "regions", "palette", "grade", "background", "fps", *_HEARD)
@@ -125,7 +125,7 @@ COMMAND_OPTIONS: dict[str, Callable[[Option], bool]] = {
     "solve": lambda o: o.group not in ("look", "output") or o.dest in _SOLVED_WITH,
     "render": lambda o: not _SOLVING & {o.group, o.dest},
     "edit": lambda o: o.group not in ("look", "output") and o.dest not in _NOT_EDITED,
-    "preview": lambda o: o.dest not in ("track", "resume", "jobs", "edits", "loop"),
+    "preview": lambda o: o.dest not in ("track", "resume", "jobs", "cluster", "edits", "loop"),
     "plan": lambda o: COMMAND_OPTIONS["solve"](o) and o.dest not in _ONCE,
     "measure": lambda o: o in RANGE_OPTIONS,
     "timeline": lambda o: o.dest in _LOOKED_AT,

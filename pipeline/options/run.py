@@ -32,6 +32,16 @@ class Run:
         default=1, metadata={"help": "processes, each for whole shots", "group": "processes"}
     )
     """Number of processes."""
+    cluster: str | None = field(
+        default=None,
+        metadata={
+            "help": "shots go to the workers of a Dask cluster: tcp://HOST:PORT, a scheduler's "
+            "file, or local:N",
+            "metavar": "ADDRESS",
+            "group": "processes",
+        },
+    )
+    """Where a cluster is, or None."""
 
     def __post_init__(self) -> None:
         if not _DEVICE.fullmatch(self.device):
@@ -42,3 +52,13 @@ class Run:
             )
         if not 1 <= self.jobs <= MAX_THREADS:
             raise OptionError(f"--jobs {self.jobs}: must lie between 1 and {MAX_THREADS}")
+        if self.cluster is not None and self.jobs > 1:
+            raise OptionError(
+                f"--cluster {self.cluster}: its workers are the processes; leave --jobs out"
+            )
+        if self.cluster is not None and self.cluster.startswith("local:"):
+            count = self.cluster.removeprefix("local:")
+            if not (count.isdecimal() and 1 <= int(count) <= MAX_THREADS):
+                raise OptionError(
+                    f"--cluster {self.cluster}: write local:N, with N from 1 to {MAX_THREADS}"
+                )

@@ -38,7 +38,10 @@ class Past:
     reached: Reached
     """The last of them."""
     snapshot: Snapshot
-    """What it became: all that the next frame depends on, beside the pictures."""
+    """What it became: all that the next frame depends on, beside the pictures and what a person
+    painted in its shot."""
+    track: Path
+    """The track."""
 
     @property
     def notes(self) -> list[str]:
@@ -78,7 +81,7 @@ def past_of(options: SolveOptions, output: Output, fitted: ColorModel) -> Past |
             return None
         _check_range(path, options.frame_range, header.frame_range, last.frame)
         reader.check()
-        return Past(header, Reached(last.frame, last.shot), _ground(reader, last.frame))
+        return Past(header, Reached(last.frame, last.shot), _ground(reader, last.frame), path)
 
 
 def _ground(reader: TrackReader, frame: int) -> Snapshot:

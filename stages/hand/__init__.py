@@ -46,6 +46,7 @@ EDITS: Registry[Edit] = Registry(
         "retriangulate": "stages.hand.retriangulate:Retriangulate",
         "lock": "stages.hand.lock:Lock",
         "unlock": "stages.hand.unlock:Unlock",
+        "set_focus": "stages.hand.regions.set_focus:SetFocus",
         "style_region": "stages.hand.regions.style_region:StyleRegion",
         "texture_region": "stages.hand.regions.texture_region:TextureRegion",
     },

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from stages.hand.locks import NO_LOCKS, Locks
+from stages.masks.area import Stroke
 from stages.mesh import Mesh
 
 
@@ -16,6 +17,8 @@ class Worked:
     """A valid mesh."""
     locks: Locks = NO_LOCKS
     """What is held fast in it."""
+    focus: tuple[Stroke, ...] = ()
+    """Where a person painted that errors count more, since the mesh was solved."""
 
     def became(self, mesh: Mesh, locks: Locks | None = None) -> "Worked":
         """What an edit made of it; locks end with what they lay on.

@@ -1,4 +1,4 @@
-"""A part of a picture that a person points at."""
+"""Parts of a picture that a person points at."""
 
 from dataclasses import dataclass
 
@@ -13,3 +13,13 @@ class Area:
     """Its radius [px]."""
     polygon: tuple[tuple[float, float], ...] = ()
     """Corners of the polygon [px], in place of a disc; or none."""
+
+
+@dataclass(frozen=True)
+class Stroke:
+    """Where a person says that errors count more."""
+
+    area: Area
+    """There."""
+    strength: float
+    """How much it adds [1]."""

@@ -34,19 +34,35 @@ def _in_disc(area: Area, size: tuple[int, int]) -> np.ndarray:
 
 
 def _in_polygon(polygon: tuple[tuple[float, float], ...], size: tuple[int, int]) -> np.ndarray:
-    """Pixels whose centres lie in a polygon, [H, W] bool.
+    """Pixels whose centres lie in a polygon, [H, W] bool."""
+    begins = np.array(polygon)
+    return within_sides(begins, np.roll(begins, -1, axis=0), size)
 
-    In each row of pixels those do that have an odd number of its sides to their left.
+
+def within_sides(begins: np.ndarray, ends: np.ndarray, size: tuple[int, int]) -> np.ndarray:
+    """Pixels whose centres have an odd number of sides to their left in their row.
+
+    Of the sides of polygons that touch without lying over each other, such as triangles of a mesh,
+    these are the pixels in any of them: a side of two polygons counts twice.
+
+    Args:
+        begins: Where sides begin [px], [N, 2].
+        ends: Where they end [px], [N, 2].
+        size: Width and height of the picture [px].
+
+    Returns:
+        Whether each does, [H, W] bool.
     """
     width, height = size
-    begins = np.array(polygon)
-    ends = np.roll(begins, -1, axis=0)
-    low, high = np.minimum(begins[:, 1], ends[:, 1]), np.maximum(begins[:, 1], ends[:, 1])
-    first, beyond = (np.clip(np.ceil(y - 0.5), 0, height).astype(np.int64) for y in (low, high))
+    falls = (begins[:, 1] <= ends[:, 1])[:, None]  # a side of two polygons is cut in one place
+    upper, lower = np.where(falls, begins, ends), np.where(falls, ends, begins)
+    first, beyond = (
+        np.clip(np.ceil(y - 0.5), 0, height).astype(np.int64) for y in (upper[:, 1], lower[:, 1])
+    )
     counts = beyond - first
     sides = np.repeat(np.arange(len(begins)), counts)
     rows = np.arange(counts.sum()) - np.repeat(counts.cumsum() - counts, counts) + first[sides]
-    (x0, y0), (x1, y1) = begins[sides].T, ends[sides].T
+    (x0, y0), (x1, y1) = upper[sides].T, lower[sides].T
     crossings = x0 + (rows + 0.5 - y0) * (x1 - x0) / (y1 - y0)
     columns = np.clip(np.ceil(crossings - 0.5), 0, width).astype(np.int64)
     switches = np.zeros((height, width + 1), dtype=np.int64)

@@ -68,6 +68,15 @@ class Unrest:
         found = cls(mesh.vertex_ids, found.values * _ramp(strange, *STRANGE))
         return found if found.is_worth_it(mesh) else None
 
+    @classmethod
+    def everywhere(cls, mesh: Mesh) -> "Unrest":
+        """All of a mesh may change, though nothing boils.
+
+        Args:
+            mesh: The mesh.
+        """
+        return cls(mesh.vertex_ids, np.ones(mesh.vertex_count))
+
     def at(self, mesh: Mesh) -> np.ndarray:
         """How much it boils around the vertices of what has become of the mesh, shape [V].
 

@@ -39,7 +39,7 @@ def solving_kernels(
 
 
 def limiting_kernels(device: Device, model: ColorModel, drawn: ColorModel) -> list[Any]:
-    """What else takes colours that are drawn: they are kept within what is near by.
+    """What else takes colours: they are kept within what is near by.
 
     Args:
         device: Where to run.
@@ -47,7 +47,9 @@ def limiting_kernels(device: Device, model: ColorModel, drawn: ColorModel) -> li
         drawn: The one that is drawn; another one has a `Workspace` of its own.
     """
     looking = [nearby_kernel(drawn), *([find_extremes] if drawn.degree > 0 else [])]
-    return looking if drawn is model else [*looking, *_own(device, drawn, "edges", False)]
+    if drawn is model:
+        return looking
+    return [nearby_kernel(model), *looking, *_own(device, drawn, "edges", False)]
 
 
 def _own(device: Device, model: ColorModel, sums: str, weighted: bool) -> list[Any]:

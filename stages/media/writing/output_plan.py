@@ -198,7 +198,9 @@ def _plan_stills(
     if options.crf is not None and not 0 <= options.crf <= 51:
         raise OptionError(f"crf {options.crf}: choose a value from 0 to 51")
     has_sound = source.audio_codec is not None or options.song is not None
-    notes = ["stills hold no sound: the audio is left out"] if has_sound else []
+    holders = "stills" if target.suffix.lower() in STILL_ENDINGS else target.suffix.lower()
+    verb = "hold" if holders == "stills" else "holds"
+    notes = [f"{holders} {verb} no sound: the audio is left out"] if has_sound else []
     if not options.audio:
         notes = []
     return OutputPlan(target, pattern, None, None, "", size[0], size[1], None, tuple(notes))

@@ -1,0 +1,1 @@
+"""`--cluster ADDRESS`: shots go to the workers of a Dask cluster."""

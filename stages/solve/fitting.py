@@ -1,0 +1,66 @@
+"""Colours of a mesh that stays as it is: fitted, steadied, and kept within what is near by."""
+
+import numpy as np
+
+from stages.frame import Frame
+from stages.hand.locks import NO_LOCKS, Locks
+from stages.mesh import Mesh
+from stages.optimize import place_mesh
+from stages.snapshot import Snapshot
+from stages.solve.color_limits import Limiter
+from stages.solve.color_owners import color_owners
+from stages.solve.steady_colors import steadied
+from warp_kernels.energy.workspace import Workspace
+
+
+class Fitting:
+    """Fits the colours of one model, in RGB and by all pixels alike.
+
+    Args:
+        workspace: Holds the picture in RGB; fixes the model.
+    """
+
+    def __init__(self, workspace: Workspace) -> None:
+        self.workspace = workspace
+        """Where it is done."""
+        self._limiter = Limiter(workspace)
+
+    def snapshot(
+        self, frame: Frame, mesh: Mesh, earlier: Snapshot | None = None, locks: Locks = NO_LOCKS
+    ) -> Snapshot:
+        """Fit colours to a mesh.
+
+        Args:
+            frame: The frame whose picture the workspace holds.
+            mesh: The triangles.
+            earlier: The frame before, to whose colours they keep if they may; None for the best.
+            locks: What a person holds.
+        """
+        place_mesh(self.workspace, mesh)
+        coefficients, energies, counts = self.workspace.fit()
+        if earlier is not None:
+            coefficients, energies = steadied(earlier, mesh, counts, coefficients, energies)
+        coefficients, energies, limits = self._limiter.limit(mesh, coefficients, energies)
+        owners = color_owners(mesh, counts)
+        return Snapshot(
+            frame_index=frame.index,
+            pts=frame.pts,
+            time_base=frame.time_base,
+            mesh=mesh,
+            model=self.workspace.model,
+            coefficients=coefficients[owners],
+            energies=energies,
+            counts=counts,
+            limits=None if limits is None else limits[owners],
+            locks=locks.within(mesh),
+        )
+
+    def torn(self, frame: Frame, mesh: Mesh) -> np.ndarray:
+        """The triangles of a mesh that no one colour becomes, [N].
+
+        Args:
+            frame: As in `snapshot`.
+            mesh: The triangles.
+        """
+        self.snapshot(frame, mesh)
+        return self._limiter.torn
