@@ -21,12 +21,11 @@ from typing import Any
 import warp as wp
 from warp._src.context import ModuleBuilder, _build_launch_bounds_from_tuple, pack_arg
 
+from warp_kernels.device.kernels import CUDA_BLOCK as BLOCK
 from warp_kernels.device.launcher import Graph
 from warp_kernels.device.runtime import EMULATED, WARP, quiet
 from warp_kernels.errors import OptionError
 
-BLOCK = 256
-"""Threads of a block."""
 STRIDE = 15485863
 """A prime: threads run in steps of it, modulo their number."""
 FLAGS = ("-std=c++17", "-O1", "-fPIC", "-ffp-contract=off", "-fno-strict-aliasing", "-w")

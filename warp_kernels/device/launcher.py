@@ -5,7 +5,7 @@ from typing import Any, Protocol
 
 import warp as wp
 
-from warp_kernels.device.kernels import Kernels, Told
+from warp_kernels.device.kernels import Kernels, Told, block_of
 from warp_kernels.device.runtime import WARP, quiet
 
 Graph = Callable[[], None]
@@ -48,7 +48,14 @@ class WarpLauncher:
         """A launch that is not made yet."""
         with WARP, quiet():
             self._kernels.make_ready(kernel)
-            return wp.launch(kernel, 1, list(arguments), device=self._device, record_cmd=True)
+            return wp.launch(
+                kernel,
+                1,
+                list(arguments),
+                device=self._device,
+                record_cmd=True,
+                block_dim=block_of(self._device),
+            )
 
     def capture(self, launches: Sequence[Any]) -> Graph:
         """A graph of Warp's."""
