@@ -39,31 +39,32 @@ def word_of(table: Table, thread: int, turn: int) -> wp.vec2l:
 @wp.kernel
 def scatter(
     # In:
-    table: Table,
     staged: wp.array(dtype=int),
+    # Out:
+    places_out: Table,
 ):
-    """Spread what was staged over its arrays; LANES threads for each."""
+    """Spread what was staged over the places that a table names; LANES threads for each."""
     turn = int(0)
-    word = word_of(table, wp.tid(), turn)
+    word = word_of(places_out, wp.tid(), turn)
     while word[0] != wp.int64(0):
         target = wp.array(ptr=wp.uint64(word[0]), shape=(1,), dtype=int)
         target[0] = staged[int(word[1])]
         turn += 1
-        word = word_of(table, wp.tid(), turn)
+        word = word_of(places_out, wp.tid(), turn)
 
 
 @wp.kernel
 def gather(
     # In:
-    table: Table,
+    places: Table,
     # Out:
     staged_out: wp.array(dtype=int),
 ):
-    """Collect rows of arrays; LANES threads for each."""
+    """Collect what lies at the places that a table names; LANES threads for each."""
     turn = int(0)
-    word = word_of(table, wp.tid(), turn)
+    word = word_of(places, wp.tid(), turn)
     while word[0] != wp.int64(0):
         source = wp.array(ptr=wp.uint64(word[0]), shape=(1,), dtype=int)
         staged_out[int(word[1])] = source[0]
         turn += 1
-        word = word_of(table, wp.tid(), turn)
+        word = word_of(places, wp.tid(), turn)

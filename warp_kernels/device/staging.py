@@ -16,6 +16,7 @@ import numpy as np
 import warp as wp
 
 from warp_kernels.device.launcher import Launcher
+from warp_kernels.device.runtime import WARP
 from warp_kernels.device.spread import LANES, MOST_PIECES, ROW, WORD, Table, gather, scatter
 
 LARGE = 1 << 20
@@ -88,7 +89,7 @@ class Staging:
             (array.ptr, begin // WORD, 1, kept.nbytes // WORD, 0)
             for begin, (array, kept) in zip(begins, waiting, strict=False)
         ]
-        self._move(self._scatter, rows)
+        self._move(self._scatter, 1, rows)
         self._mark_sent()
 
     def read(self, wanted: Sequence[Rows]) -> list[np.ndarray]:
@@ -106,7 +107,7 @@ class Staging:
             begins = [0, *accumulate(sizes)]
             self._reserve(begins[-1])
             places = [_place_of(r, begin) for r, begin in zip(wanted, begins, strict=False)]
-            self._move(self._gather, [place for place in places if place[2] * place[3]])
+            self._move(self._gather, 0, [place for place in places if place[2] * place[3]])
             self._copy(self._pinned, self._on_card, begins[-1], TO_HOST)
         self.wait()
         found, begin = [], 0
@@ -121,7 +122,8 @@ class Staging:
     def wait(self) -> None:
         """Wait until everything launched so far is done."""
         self._traffic[WAITS] += 1
-        wp.synchronize_device(self._device)
+        with WARP:
+            wp.synchronize_device(self._device)
         self._sent = None
 
     def _send_alone(self, array: wp.array, kept: np.ndarray) -> None:
@@ -138,12 +140,14 @@ class Staging:
             self._traffic[counted] += 1
             self._launcher.copy(target, source, size)
 
-    def _move(self, launch: Any, rows: Sequence[tuple[int, ...]]) -> None:
-        """Launch a kernel that spreads or gathers."""
+    def _move(self, launch: Any, argument: int, rows: Sequence[tuple[int, ...]]) -> None:
+        """Launch a kernel that spreads or gathers; one of its arguments is the table."""
         for first in range(0, len(rows), MOST_PIECES):
             some = rows[first : first + MOST_PIECES]
             numbers = [number for row in some for number in row]
-            launch.set_param_at_index(0, Table(numbers + [0] * (MOST_PIECES * ROW - len(numbers))))
+            launch.set_param_at_index(
+                argument, Table(numbers + [0] * (MOST_PIECES * ROW - len(numbers)))
+            )
             launch.set_dim(len(some) * LANES)
             launch.launch()
             self._traffic[LAUNCHES] += 1
@@ -152,28 +156,28 @@ class Staging:
         """Have room for so many bytes on both sides."""
         if hasattr(self, "_pinned") and size <= len(self._seen):
             return
-        self._traffic[WAITS] += 1
-        wp.synchronize_device(self._device)
+        self.wait()
         room = size * 3 // 2 // WORD * WORD + WORD
         is_card = bool(self._device.is_cuda)
-        self._pinned = wp.empty(room, dtype=wp.uint8, device="cpu", pinned=is_card)
-        self._on_card = wp.empty(room, dtype=wp.uint8, device=self._device)
-        self._seen: np.ndarray = self._pinned.numpy()
-        words = wp.array(
-            ptr=self._on_card.ptr, shape=(room // WORD,), dtype=int, device=self._device
-        )
-        self._scatter = self._launcher.record(scatter, [Table(), words])
+        with WARP:
+            self._pinned = wp.empty(room, dtype=wp.uint8, device="cpu", pinned=is_card)
+            self._on_card = wp.empty(room, dtype=wp.uint8, device=self._device)
+            self._seen: np.ndarray = self._pinned.numpy()
+            words = self._on_card.view(wp.int32)
+        self._scatter = self._launcher.record(scatter, [words, Table()])
         self._gather = self._launcher.record(gather, [Table(), words])
 
     def _mark_sent(self) -> None:
         """Remember when the pinned memory may be used again."""
         if self._device.is_cuda:
-            self._sent = wp.get_stream(self._device).record_event()
+            with WARP:
+                self._sent = wp.get_stream(self._device).record_event()
 
     def _wait_for_sent(self) -> None:
         """Wait until the pinned memory may be used again."""
         if self._sent is not None:
-            wp.synchronize_event(self._sent)
+            with WARP:
+                wp.synchronize_event(self._sent)
             self._sent = None
 
 
@@ -216,4 +220,5 @@ def _place_of(rows: Rows, begin: int) -> tuple[int, ...]:
 
 def _as_bytes(array: wp.array, size: int) -> wp.array:
     """The beginning of an array as bytes."""
-    return wp.array(ptr=array.ptr, shape=(size,), dtype=wp.uint8, device=array.device)
+    with WARP:
+        return wp.array(ptr=array.ptr, shape=(size,), dtype=wp.uint8, device=array.device)
