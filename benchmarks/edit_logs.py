@@ -1,50 +1,43 @@
 """Long random logs of edits by hand: valid after each, undone and replayed to the bit.
 
-    python -m benchmarks.edit_logs [EDITS] [SEEDS]
+    python -m benchmarks.edit_logs [--edits N] [--seeds N] [--clip CLIP] [--frames A-B]
 
-Prints for each seed how many edits were made and refused, and what one takes.
+Stills first: a log of so many edits of one mesh. Then a clip: a log of so many edits over all its
+frames, solved twice, the second time from its lines on one thread, and without edits.
 """
 
-import sys
-from collections.abc import Callable
-from time import perf_counter
+import argparse
+import sqlite3
+import tempfile
+from contextlib import closing
+from pathlib import Path
+from time import perf_counter, process_time
 
 import numpy as np
 
 from pipeline.edit_log.json_lines import as_json_lines, from_json_lines
+from pipeline.loop.animate import solve
 from pipeline.options.edit_log import EditLog
-from stages.hand import EDITS, Edit
+from pipeline.options.output import Output
+from pipeline.options.run import Run
+from pipeline.options.solve_options import SolveOptions
+from pipeline.progress import Progress
+from pipeline.track import TrackReader
+from stages.hand import Edit
 from stages.hand.worked import Worked
 from stages.layouts.importance import Importance
+from stages.media import FrameRange, probe
 from stages.mesh import Mesh
+from stages.topology.refine_options import RefineOptions
+from stages.triangulate_options import TriangulateOptions
 from stages.validate import assert_valid
+from tests.random_edits import random_edit
 
 SIZE = (640, 360)
 TRIANGLES = 1500
-
-
-def random_edit(rng: np.random.Generator) -> Edit:
-    """One edit of any kind, now and then one that cannot be made."""
-    name = list(EDITS)[rng.integers(len(EDITS))]
-
-    def point() -> tuple[float, float]:
-        x, y = rng.uniform(-10, 10 + np.array(SIZE))
-        return float(x), float(y)
-
-    at = point()
-    polygon = tuple((at[0] + float(x), at[1] + float(y)) for x, y in rng.uniform(-60, 60, (4, 2)))
-    few = {"count": int(rng.integers(1, 30)), "seed": int(rng.integers(99))}
-    round_brush = {"at": at, "radius": float(rng.uniform(5, 60)), **few}
-    others: dict[str, Callable[[], dict[str, object]]] = {
-        "move_vertex": lambda: {"at": at, "to": (at[0] + 4.0, at[1] - 3.0)},
-        "insert": lambda: round_brush,
-        "remove": lambda: round_brush,
-        "retriangulate": lambda: {"polygon": polygon, **few},
-        "lock": lambda: {"polygon": polygon},
-        "unlock": lambda: {"polygon": polygon, "what": "edges"},
-    }
-    edit: Edit = EDITS[name](0, **others.get(name, lambda: {"at": at})())  # type: ignore[call-arg]
-    return edit
+CLIP = Path(__file__).parents[1] / "sample_videos" / "shapes.mp4"
+QUICK = TriangulateOptions(frame_iterations=12, refine=RefineOptions(triangles=400))
+"""What is asked here does not depend on how well a picture is met."""
 
 
 def same(one: Mesh, other: Mesh) -> bool:
@@ -60,20 +53,21 @@ def first_mesh(seed: int) -> Mesh:
     return Importance().build(pixels, TRIANGLES, rng)
 
 
-def run(seed: int, count: int) -> None:
-    """Make one log and check it."""
+def check_still(seed: int, count: int) -> None:
+    """Make one log of edits of a mesh and check it."""
     rng = np.random.default_rng([1, seed])
     worked = Worked(first_mesh(seed))
     made: list[Edit] = []
     refused = 0
     seconds = 0.0
     while len(made) < count:
-        edit = random_edit(rng)
-        begun = perf_counter()
+        edit = random_edit(rng, SIZE)
+        begun = process_time()
         result = EditLog((edit,)).replay(0, worked)
-        seconds += perf_counter() - begun
+        seconds += process_time() - begun
         refused += len(result.refused)
         if result.refused:
+            assert result.worked is worked
             continue
         worked = result.worked
         made.append(edit)
@@ -82,19 +76,67 @@ def run(seed: int, count: int) -> None:
     undone = EditLog(()).replay(0, Worked(first_mesh(seed))).worked
     replayed = log.replay(0, Worked(first_mesh(seed))).worked
     print(
-        f"seed {seed}: {count} edits made, {refused} refused, {1e3 * seconds / count:.1f} ms each; "
-        f"{worked.mesh.triangle_count} triangles, {len(worked.locks.vertices)} held vertices; "
+        f"still, seed {seed}: {count} edits made, {refused} refused, "
+        f"{1e3 * seconds / count:.1f} ms of CPU each; {worked.mesh.triangle_count} triangles, "
+        f"{len(worked.locks.vertices)} held vertices; "
         f"undone to the bit: {same(undone.mesh, first_mesh(seed))}, "
         f"replayed to the bit: {same(replayed.mesh, worked.mesh)}"
     )
 
 
+def check_clip(clip: Path, frames: FrameRange, seed: int, count: int) -> None:
+    """Make one log of edits over the frames of a clip, and check it."""
+    rng = np.random.default_rng([2, seed])
+    info = probe(clip)
+    assert frames.last is not None
+    numbers = rng.integers(frames.first, frames.last + 1, count).tolist()
+    edits = tuple(random_edit(rng, (info.width, info.height), number) for number in numbers)
+    log = EditLog(edits)
+    with tempfile.TemporaryDirectory() as folder:
+        plain, first, again, none = (Path(folder) / f"{n}.mtrk" for n in ("p", "f", "a", "n"))
+        refused, seconds = _solved(clip, frames, log, first)
+        _solved(clip, frames, from_json_lines(as_json_lines(log), "log"), again, threads=1)
+        _solved(clip, frames, EditLog(), none)
+        _solved(clip, frames, None, plain)
+        with TrackReader(first) as track:
+            for row in track.rows:
+                assert_valid(track.snapshot(row.frame).mesh)
+        print(
+            f"clip, seed {seed}: {count} edits in {len(log.frames)} frames, {refused} refused, "
+            f"{seconds:.0f} s; all {len(_rows(first))} frames valid, undone to the bit: "
+            f"{_rows(none) == _rows(plain)}, replayed to the bit: {_rows(again) == _rows(first)}"
+        )
+
+
+def _solved(
+    clip: Path, frames: FrameRange, log: EditLog | None, track: Path, threads: int = 0
+) -> tuple[int, float]:
+    """Solve a clip to a track; how many edits were refused, and the time [s]."""
+    options = SolveOptions(clip, frames, triangulate=QUICK, edits=log)
+    begun = perf_counter()
+    result = solve(options, Output(track=track), Run(threads=threads), Progress())
+    return len(result.warnings), perf_counter() - begun
+
+
+def _rows(track: Path) -> list[tuple[object, ...]]:
+    """All that is stored of the frames of a track."""
+    with closing(sqlite3.connect(track)) as connection:
+        query = "SELECT * FROM meshes LEFT JOIN topologies USING (frame) ORDER BY frame"
+        return connection.execute(query).fetchall()
+
+
 def main() -> None:
     """Run all."""
-    given = list(map(int, sys.argv[1:]))
-    count, seeds = (*given, *(2000, 3)[len(given) :])
-    for seed in range(seeds):
-        run(seed, count)
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--edits", type=int, default=2000)
+    parser.add_argument("--seeds", type=int, default=3)
+    parser.add_argument("--clip", type=Path, default=CLIP)
+    parser.add_argument("--frames", default="0-23")
+    given = parser.parse_args()
+    for seed in range(given.seeds):
+        check_still(seed, given.edits)
+    for seed in range(given.seeds):
+        check_clip(given.clip, FrameRange.parse(given.frames), seed, given.edits)
 
 
 if __name__ == "__main__":

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from pipeline.edit_log.json_lines import write_log
+from pipeline.edit_log.json_lines import as_json_lines, from_json_lines, write_log
 from pipeline.edit_log.read import read_log
 from pipeline.options.edit_log import EditLog
 from pipeline.progress import Progress
@@ -21,6 +21,7 @@ from stages.hand.move_vertex import MoveVertex
 from stages.hand.remove import Remove
 from stages.validate import assert_valid
 from tests.jobs import job_of
+from tests.random_edits import random_edit
 from tests.tracks import COUNT, CUT, QUICK, rows_of, solve_to, write_clip
 from warp_kernels.errors import OptionError
 
@@ -108,6 +109,22 @@ def test_others_give_the_same_bits(clip: Path, whole: Path, tmp_path: Path) -> N
     solve_to(tmp_path / "b.mtrk", clip, f"{CUT}-", edits=LOG)
     alone = rows_of(tmp_path / "b.mtrk")
     assert alone == {table: [r for r in rows if r[0] >= CUT] for table, rows in wanted.items()}
+
+
+def test_a_random_log_leaves_all_frames_valid_and_comes_again(clip: Path, tmp_path: Path) -> None:
+    """Forty edits in any frame of both shots; `benchmarks/edit_logs.py` makes 2,000."""
+    rng = np.random.default_rng(11)
+    frames = rng.integers(0, COUNT, 40).tolist()
+    log = EditLog(tuple(random_edit(rng, (96, 64), frame) for frame in frames))
+    first = solve_to(tmp_path / "a.mtrk", clip, edits=log)
+    assert 0 < len(first.warnings) < 30
+    with TrackReader(tmp_path / "a.mtrk") as track:
+        for frame in range(COUNT):
+            assert_valid(track.snapshot(frame).mesh)
+    lines = from_json_lines(as_json_lines(log), "log")
+    again = solve_to(tmp_path / "b.mtrk", clip, edits=lines, threads=1)
+    assert again.warnings == first.warnings
+    assert rows_of(tmp_path / "b.mtrk") == rows_of(tmp_path / "a.mtrk")
 
 
 class Interrupting(Progress):

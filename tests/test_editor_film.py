@@ -15,6 +15,7 @@ from pipeline.editor.bench.long_work import Applying, Rendering
 from pipeline.editor.bench.session import Session
 from pipeline.track import TrackReader
 from stages.hand.insert import Insert
+from stages.hand.regions.style_region import StyleRegion
 from stages.hand.split_triangle import SplitTriangle
 from stages.media import open_decoder
 from tests.editing import opened, write_clip_job
@@ -153,3 +154,26 @@ def test_the_track_stays_one(session: Session) -> None:
         assert track.header.finished
         assert track.header.solve.edits is not None
         assert set(track.header.solve.edits.edits) == {FIRST, SECOND}
+
+
+@pytest.mark.parametrize("frame", [3, 5, CUT])
+def test_painted_regions_are_drawn_as_by_render(
+    session: Session, tmp_path: Path, frame: int
+) -> None:
+    """In the frame in which they were painted, later in its shot, and not in the next one."""
+    plain = session.drawn(frame, look_of([]))
+    painted = StyleRegion(frame=3, at=(40.0, 30.0), radius=20.0, style="edges:width=3")
+    session.make([painted], after=0)
+    assert session.state()["pending"] == []  # the meshes are as they were
+    still = tmp_path / "frame.png"
+    words = ["render", str(session.path), "-o", str(still), "--frames", str(frame)]
+    assert main(words) == 0
+    drawn = session.drawn(frame, look_of([]))
+    assert np.array_equal(drawn, np.asarray(Image.open(still)))
+    assert np.array_equal(drawn, plain) == (frame == CUT)
+
+
+def test_a_style_that_there_is_not_is_not_painted(session: Session) -> None:
+    with pytest.raises(OptionError, match="did you mean edges"):
+        session.make([StyleRegion(frame=3, at=(40.0, 30.0), radius=9.0, style="edgs")], after=0)
+    assert session.state()["edits"] == 0

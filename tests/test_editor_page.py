@@ -6,6 +6,7 @@ Where no Chromium is found these tests are skipped, unless FAIL_WITHOUT_CHROMIUM
 import io
 import os
 from collections.abc import Iterator
+from dataclasses import fields
 from typing import Any
 
 import numpy as np
@@ -16,8 +17,10 @@ from playwright.sync_api import Browser, Page, expect, sync_playwright
 from pipeline.edit_log.journal import EditJournal
 from stages.hand import EDITS
 from tests.editing import Served, browser_path, served, write_clip_job, write_job
+from warp_kernels.styles import STYLES
 
 ARGUMENTS = ["--no-sandbox", "--enable-unsafe-swiftshader"]
+expect.set_options(timeout=60_000)  # a machine may be busy with other tests
 SIZE = {"width": 1000, "height": 640}
 
 
@@ -56,7 +59,7 @@ def page(browser: Browser, server: Served) -> Iterator[Page]:
     with EditJournal(server.studio.session.path) as journal:
         journal.go_to(0)
     page = browser.new_page(viewport=SIZE)
-    page.set_default_timeout(20_000)
+    page.set_default_timeout(60_000)
     problems: list[str] = []
     page.on("pageerror", lambda error: problems.append(str(error)))
     page.on("console", lambda told: problems.append(told.text) if told.type == "error" else None)
@@ -309,10 +312,42 @@ def test_the_layers_are_drawn(page: Page) -> None:
     assert shot(0, 0)[spots].max() < 40
 
 
+def test_styles_are_stacked_and_changed(page: Page, server: Served) -> None:
+    """The panel is made from the registry; what it says is what the command line says."""
+    assert page.locator("#add-style option").count() == 1 + len(STYLES)
+    page.locator("#add-style").select_option("edges")
+    width = page.locator("#set-style-width")
+    expect(width).to_be_visible()
+    field = next(f for f in fields(STYLES["edges"]) if f.name == "width")
+    assert [float(width.get_attribute(e) or "") for e in ("min", "max")] == [
+        *field.metadata["range"]
+    ]
+    width.fill("3.5")
+    command = page.locator("#command-render")
+    expect(command).to_contain_text("--style flat --style edges:width=3.5")
+    page.locator("[data-style=edges] button").first.focus()
+    page.keyboard.press("Alt+ArrowDown")
+    expect(command).to_contain_text("--style edges:width=3.5 --style flat")
+    page.locator("[data-style=edges]").drag_to(page.locator("[data-style=flat]"))
+    expect(command).to_contain_text("--style flat --style edges:width=3.5")
+    page.locator("#set-style-color").fill("#zzz")
+    page.locator("#set-style-color").press("Enter")
+    expect(page.locator("#toast")).to_contain_text("#zzz")
+
+
+def test_a_style_is_painted_onto_triangles(page: Page, server: Served) -> None:
+    page.keyboard.press("t")
+    page.locator("#set-radius").fill("12")
+    page.locator("#set-paint").select_option("edges")
+    page.mouse.click(*place(page, 48, 32))
+    wait_for_edits(page, 1)
+    assert log_of(server) == ["style_region"]
+
+
 def test_time_and_the_way_through_a_shot(browser: Browser, clip_server: Served) -> None:
     """Seek, edit, apply, compare, play and render: all that one does with a film."""
     page = browser.new_page(viewport=SIZE)
-    page.set_default_timeout(30_000)
+    page.set_default_timeout(60_000)
     page.goto(clip_server.address.url)
     expect(page.locator("#loading")).to_be_hidden()
     strip = page.locator("#strip").bounding_box()

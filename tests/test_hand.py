@@ -20,6 +20,9 @@ from stages.hand.flip_edge import FlipEdge
 from stages.hand.insert import Insert
 from stages.hand.lock import Lock
 from stages.hand.move_vertex import MoveVertex
+from stages.hand.regions.set_focus import SetFocus
+from stages.hand.regions.style_region import StyleRegion
+from stages.hand.regions.texture_region import TextureRegion
 from stages.hand.remove import Remove
 from stages.hand.retriangulate import Retriangulate
 from stages.hand.split_edge import SplitEdge
@@ -41,6 +44,10 @@ BRUSHES: dict[str, Any] = {
     "spread": st.sampled_from(["uniform", "normal"]),
     "seed": st.integers(0, 9),
 }
+REGIONS: tuple[dict[str, Any], ...] = (
+    {"frame": st.just(0), "at": POINTS, "radius": st.floats(0, 30)},
+    {"frame": st.just(0), "polygon": POLYGONS},
+)
 WHAT = {"frame": st.just(0), "what": st.sampled_from(["vertices", "edges"])}
 SINGLE = st.one_of(
     *(st.builds(kind, st.just(0), POINTS) for kind in (SplitEdge, SplitTriangle, FlipEdge)),
@@ -51,6 +58,9 @@ SINGLE = st.one_of(
     st.builds(Retriangulate, st.just(0), POLYGONS, st.integers(0, 12)),
     *(st.builds(kind, polygon=POLYGONS, **WHAT) for kind in (Lock, Unlock)),
     *(st.builds(kind, at=POINTS, **WHAT) for kind in (Lock, Unlock)),
+    *(st.builds(SetFocus, strength=st.floats(0, 5), **region) for region in REGIONS),
+    *(st.builds(StyleRegion, style=st.just("flat"), **region) for region in REGIONS),
+    *(st.builds(TextureRegion, file=st.just("cushion"), **region) for region in REGIONS),
 )
 
 
@@ -60,7 +70,7 @@ def same(one: Worked, other: Worked) -> bool:
     pairs = [(getattr(one.mesh, n), getattr(other.mesh, n)) for n in names]
     pairs += [(getattr(one.locks, n), getattr(other.locks, n)) for n in ("vertices", "edges")]
     pairs += [(one.locks.bare, other.locks.bare)]
-    return all(np.array_equal(a, b) for a, b in pairs)
+    return one.focus == other.focus and all(np.array_equal(a, b) for a, b in pairs)
 
 
 @settings(max_examples=25)
@@ -194,7 +204,7 @@ LINES = [
     ('{"edit": "flip_edge", "frame": 3, "at": [1, NaN]}', "line 2: flip_edge: at: nan is no"),
     ('{"edit": "flip_edge", "frame": -3, "at": [1, 1]}', "line 2: frame -3 is none"),
     ('{"edit": "flip_edge", "frame": 3, "at": [1, 1], "by": 2}', "has no 'by'; it has frame, at"),
-    ('{"edit": "flip_edge", "frame": true, "at": [1, 1]}', "frame: True instead of int"),
+    ('{"edit": "flip_edge", "frame": true, "at": [1, 1]}', "frame: True instead of a whole number"),
     ('{"edit": "lock", "class": "Lock", "frame": 1}', "lock has no 'class'"),
 ]
 

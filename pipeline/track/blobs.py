@@ -6,6 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from pipeline.track.nouns import noun_for
+
 LEVEL = 1
 """zlib's fastest level: stronger ones save a few percent and cost several times as much."""
 
@@ -39,7 +41,7 @@ def unpack_rows(blob: Any, kind: str, width: int, most: int) -> np.ndarray:
     """
     row = np.dtype(kind).itemsize * width
     if not isinstance(blob, bytes):
-        raise ValueError(f"{type(blob).__name__} instead of bytes")
+        raise ValueError(f"{noun_for(blob)} instead of bytes")
     machine = zlib.decompressobj()
     try:
         size = len(machine.decompress(blob, most * row + 1))
@@ -64,7 +66,7 @@ def unpack(blob: Any, kind: str, shape: tuple[int, ...]) -> np.ndarray:
     item = np.dtype(kind).itemsize
     size = math.prod(shape) * item
     if not isinstance(blob, bytes):
-        raise ValueError(f"{type(blob).__name__} instead of bytes")
+        raise ValueError(f"{noun_for(blob)} instead of bytes")
     machine = zlib.decompressobj()
     try:
         content = machine.decompress(blob, size + 1)  # never more than is expected

@@ -21,8 +21,8 @@ def read_cuts(path: Path) -> frozenset[int]:
     try:
         numbers = json.loads(text) if text.lstrip().startswith("[") else text.split()
         cuts = frozenset(int(str(number)) for number in numbers)  # 2.5 and true are no frames
-    except (ValueError, TypeError) as error:
-        raise MediaError(path, f"is no list of cuts ({error})", remedy) from error
+    except (ValueError, TypeError, RecursionError) as error:
+        raise MediaError(path, "is no list of whole numbers", remedy) from error
     if min(cuts, default=0) < 0:
         raise MediaError(path, f"a cut at frame {min(cuts)}", remedy)
     return cuts

@@ -13,6 +13,7 @@ from pipeline.options.solve_options import SolveOptions
 from pipeline.track.cuts import read_cuts
 from pipeline.track.earlier import up_to_date
 from pipeline.track.identity import SourceIdentity, identity_of
+from pipeline.track.nouns import noun_for
 from pipeline.track.plain_values import UnknownNameError, from_plain, to_plain
 from pipeline.version import library_versions, program_version
 from stages.media import FrameRange, MediaInfo
@@ -149,11 +150,11 @@ def read_header(path: Path, connection: sqlite3.Connection) -> Header:
             raise UnknownNameError(f"the fact {reprlib.repr(min(map(str, unknown)))}")
         header = Header(
             program=_text(rows["program"]),
-            libraries={_text(k): _text(v) for k, v in dict(rows["libraries"]).items()},
-            options=up_to_date(dict(rows["options"])),
+            libraries={_text(k): _text(v) for k, v in _table(rows["libraries"]).items()},
+            options=up_to_date(_table(rows["options"])),
             source=from_plain(SourceIdentity, rows["source"]),
             info=from_plain(MediaInfo, rows["info"]),
-            model=COLOR_MODELS[_text(rows["model"])],
+            model=_model(_text(rows["model"])),
             finished=rows["finished"],
         )
         _check_info(header.info)
@@ -164,8 +165,9 @@ def read_header(path: Path, connection: sqlite3.Connection) -> Header:
             "version that made it, or solve again"
         ) from error
     except (AttributeError, KeyError, TypeError, ValueError, RecursionError, OptionError) as error:
+        reason = f"{error} is missing" if isinstance(error, KeyError) else error
         raise TrackError(
-            f"{path}: the track's header is damaged ({error}); take a copy of it, or solve again"
+            f"{path}: the track's header is damaged ({reason}); take a copy of it, or solve again"
         ) from error
     return header
 
@@ -184,8 +186,20 @@ def _refused(name: str) -> None:
 
 def _text(value: Any) -> str:
     if not isinstance(value, str):
-        raise ValueError(f"{type(value).__name__} instead of text")
+        raise ValueError(f"{noun_for(value)} instead of a text")
     return value
+
+
+def _table(value: Any) -> dict[str, Any]:
+    if not isinstance(value, dict):
+        raise ValueError(f"{noun_for(value)} instead of a table")
+    return value
+
+
+def _model(name: str) -> ColorModel:
+    if name not in COLOR_MODELS:
+        raise ValueError(f"colours {reprlib.repr(name)}")
+    return COLOR_MODELS[name]
 
 
 def _check_info(info: MediaInfo) -> None:

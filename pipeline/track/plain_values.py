@@ -22,6 +22,7 @@ from typing import Any
 
 import numpy as np
 
+from pipeline.track.nouns import noun_of
 from warp_kernels.errors import OptionError
 from warp_kernels.registry import Registry
 
@@ -72,8 +73,8 @@ def from_plain(cls: type, plain: Any, *, arrays: bool = True) -> Any:
 
     Raises:
         UnknownNameError: If a class or a field is not one of this program.
-        ValueError: If a value is of another kind than its field.
-        TypeError: If a field without a default is missing.
+        ValueError: If a value is of another kind than its field, or one without a default is
+            missing.
     """
     if not isinstance(plain, Mapping):
         raise ValueError(f"{cls.__name__}: {reprlib.repr(plain)} stands for no such thing")
@@ -93,7 +94,15 @@ def from_plain(cls: type, plain: Any, *, arrays: bool = True) -> Any:
             raise
         except (ValueError, OverflowError, ZeroDivisionError) as error:
             raise ValueError(f"{name}: {error}") from error
+    lacking = [name for name, field in fields.items() if name not in values and _is_wanted(field)]
+    if lacking:
+        raise ValueError(f"{cls.__name__} lacks {', '.join(lacking)}")
     return cls(**values)
+
+
+def _is_wanted(field: dataclasses.Field[Any]) -> bool:
+    missing = dataclasses.MISSING
+    return field.default is missing and field.default_factory is missing
 
 
 def _fields(cls: Any) -> list[dataclasses.Field[Any]]:
@@ -133,7 +142,7 @@ def _single(hint: Any, plain: Any) -> Any:
     """A truth, a number, a text, a path or a fraction; JSON tells truths from numbers."""
     written: Any = {bool: bool, int: int, float: (int, float)}.get(hint, str)
     if not isinstance(plain, written) or (isinstance(plain, bool) and hint is not bool):
-        raise ValueError(f"{reprlib.repr(plain)} instead of {hint.__name__}")
+        raise ValueError(f"{reprlib.repr(plain)} instead of {noun_of(hint)}")
     if hint is float and not math.isfinite(plain):
         raise ValueError(f"{plain} is no number")
     if isinstance(plain, str) and "\0" in plain:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from stages.mesh import Mesh, areas_of, next_corner
+from stages.mesh import Mesh, next_corner
 from warp_kernels.errors import EditError
 
 Point = tuple[float, float]
@@ -64,19 +64,14 @@ def triangles_at(mesh: Mesh, points: np.ndarray) -> np.ndarray:
         mesh: A valid mesh.
         points: Positions [px], shape [N, 2].
     """
+    corners, areas = mesh.corners, mesh.areas
+    sides = corners[:, (1, 2, 0)] - corners
     found = np.empty(len(points), dtype=np.int64)
     for number, point in enumerate(points):
-        corners = mesh.corners
-        parts = [
-            areas_of(
-                np.stack(
-                    [corners[:, i], corners[:, j], np.broadcast_to(point, (len(corners), 2))], 1
-                )
-            )
-            for i, j in ((0, 1), (1, 2), (2, 0))
-        ]
+        away = point - corners
+        parts = sides[..., 0] * away[..., 1] - sides[..., 1] * away[..., 0]
         # how far inside, as a share of the triangle: rounding leaves no point between two of them
-        found[number] = (np.minimum.reduce(parts) / mesh.areas).argmax()
+        found[number] = (parts.min(axis=1) / areas).argmax()
     return found
 
 

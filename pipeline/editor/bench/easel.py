@@ -1,5 +1,6 @@
 """Fits colours to meshes and draws them, as the output is drawn."""
 
+from collections import OrderedDict
 from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
@@ -22,6 +23,8 @@ from warp_kernels.device.device import Device
 
 MOST_ACROSS = 1920
 """Widest picture that is drawn for the page [px]."""
+MOST_WARDROBES = 6
+"""Kinds of looks whose memory is kept."""
 THUMBNAIL_ACROSS = 128
 """Widest thumbnail [px]."""
 
@@ -38,7 +41,7 @@ class Easel:
     def __init__(self, device: Device, options: SolveOptions, size: tuple[int, int]) -> None:
         self._device, self._options, self._size = device, options, size
         self._triangulators: dict[str, Triangulator] = {}
-        self._wardrobes: dict[tuple[int, int], Wardrobe] = {}
+        self._wardrobes: OrderedDict[object, Wardrobe] = OrderedDict()
 
     def fitted(self, frame: Frame, worked: Worked, model: ColorModel) -> Snapshot:
         """A mesh as it is, with the colours that fit it.
@@ -72,7 +75,12 @@ class Easel:
         return self._triangulator(model).first(frame, self._options.layout, rng)
 
     def drawn(
-        self, snapshot: Snapshot, frame: Frame | None, look: Look, time: float = 0.0
+        self,
+        snapshot: Snapshot,
+        frame: Frame | None,
+        look: Look,
+        time: float = 0.0,
+        shares: np.ndarray | None = None,
     ) -> np.ndarray:
         """A frame as the output shows it, at most `MOST_ACROSS` wide.
 
@@ -81,11 +89,17 @@ class Easel:
             frame: The picture; None if the look does not show it.
             look: How they are drawn.
             time: When it is shown [s].
+            shares: Which followed regions of the look its triangles belong to, [T, R] uint8.
 
         Returns:
             Code values, [rows, columns, 3 or 4] uint8.
         """
-        return self._drawn(snapshot, frame, look, time, MOST_ACROSS)
+        look = replace(look, scale=min(1.0, MOST_ACROSS / self._size[0]), output_size=None)
+        framing = look.framing_for(self._size, Fraction(1))
+        source = None if frame is None else frame.pixels
+        view = Posed(snapshot, None, source, {}, shares, None, {}, time)
+        pixels = self._wardrobe(framing.picture, look).draw(look, view)
+        return framed(pixels, framing, look.backdrop(self.model))
 
     def thumbnail(self, snapshot: Snapshot) -> np.ndarray:
         """A frame in small, in the colours of its triangles.
@@ -96,20 +110,22 @@ class Easel:
         Returns:
             Code values, [rows, columns, 3] uint8.
         """
-        return self._drawn(snapshot, None, look_of(()), 0.0, THUMBNAIL_ACROSS)
+        look = replace(look_of(()), scale=min(1.0, THUMBNAIL_ACROSS / self._size[0]))
+        size = look.framing_for(self._size, Fraction(1)).picture
+        view = Posed(snapshot, None, None, {}, None, None, {}, 0.0)
+        return self._wardrobe(size, look).draw(look, view)
 
-    def _drawn(
-        self, snapshot: Snapshot, frame: Frame | None, look: Look, time: float, most: int
-    ) -> np.ndarray:
-        look = replace(look, scale=min(1.0, most / self._size[0]), output_size=None)
-        framing = look.framing_for(self._size, Fraction(1))
-        wardrobe = self._wardrobes.get(framing.picture)
-        if wardrobe is None:
-            wardrobe = Wardrobe(self._device, self._size, framing.picture, look, self.model)
-            self._wardrobes[framing.picture] = wardrobe
-        source = None if frame is None else frame.pixels
-        view = Posed(snapshot, None, source, {}, None, None, {}, time)
-        return framed(wardrobe.draw(look, view), framing, look.backdrop(self.model))
+    def _wardrobe(self, size: tuple[int, int], look: Look) -> Wardrobe:
+        """What draws a look; what draws looks with other styles is kept for a while."""
+        kinds = tuple(type(style) for style in (*look.styles, *(r.style for r in look.regions)))
+        key = size, look.followed, kinds
+        if key not in self._wardrobes:
+            made = Wardrobe(self._device, self._size, size, look, self.model)
+            self._wardrobes[key] = made
+        self._wardrobes.move_to_end(key)
+        while len(self._wardrobes) > MOST_WARDROBES:
+            self._wardrobes.popitem(last=False)
+        return self._wardrobes[key]
 
     @property
     def model(self) -> ColorModel:

@@ -2,9 +2,15 @@
 
 from pathlib import Path
 
+import numpy as np
+
 from pipeline.editor.bench.errands import Shots, ground_of
+from pipeline.look.region_members import followed_shares
 from pipeline.options.edit_log import EditLog
+from pipeline.options.look import Look
+from pipeline.options.solve_options import SolveOptions
 from pipeline.track import TrackReader
+from stages.hand import DRAWN, EDITS
 from stages.media import MediaInfo
 from stages.snapshot import Snapshot
 from warp_kernels.color_model import ColorModel
@@ -81,13 +87,13 @@ class Film:
         return self._ground is not None or not self.solved_with.edits
 
     def pending(self, log: EditLog) -> list[Shots]:
-        """Shots that were not yet solved with the edits in force.
+        """Shots whose meshes were not yet solved with the edits in force.
 
         Args:
             log: Those.
         """
-        solved = self.solved_with
-        return [shots for shots in self.shots if shots.log(log) != shots.log(solved)]
+        now, then = _of_meshes(log), _of_meshes(self.solved_with)
+        return [shots for shots in self.shots if shots.log(now) != shots.log(then)]
 
     def snapshot(self, frame: int, *, before: bool = False) -> Snapshot:
         """What a frame became.
@@ -102,6 +108,22 @@ class Film:
         reader = self._ground if before and self._ground is not None else self._reader
         return reader.snapshot(frame)
 
+    def followed(
+        self, look: Look, options: SolveOptions, frames: tuple[int, ...]
+    ) -> dict[int, np.ndarray]:
+        """The triangles of the one region of a look, by frame, in the shots of some frames.
+
+        Args:
+            look: Has the region.
+            options: How the frames were solved.
+            frames: Those for which the region was painted.
+        """
+        shots = {self._rows[frame].shot for frame in frames}
+        rows = [row for row in self._rows.values() if row.shot in shots]
+        shares = followed_shares(options, look, self._reader, rows)
+        found = zip(rows, shares, strict=True)
+        return {row.frame: share[:, 0] > 0 for row, share in found if share is not None}
+
     def time(self, frame: int) -> float:
         """When a frame is shown [s from the first one]."""
         return float(self._rows[frame].pts * self.info.time_base - self.info.start_time)
@@ -111,3 +133,8 @@ class Film:
         self._reader.close()
         if self._ground is not None:
             self._ground.close()
+
+
+def _of_meshes(log: EditLog) -> EditLog:
+    """A log without what is only drawn."""
+    return EditLog(tuple(e for e in log.edits if EDITS.name_of(type(e)) not in DRAWN))

@@ -10,8 +10,10 @@ from typing import Any
 import numpy as np
 
 from pipeline.edit_log.journal import EditJournal
+from pipeline.edit_log.painted_regions import check_style, painted_regions
 from pipeline.editor.bench.easel import Easel
 from pipeline.editor.bench.film import Film
+from pipeline.editor.bench.members import Members
 from pipeline.editor.bench.pictures import Pictures
 from pipeline.editor.bench.replays import Replays
 from pipeline.options.edit_log import EditLog
@@ -78,6 +80,7 @@ class Session:
         self.film = Film(track)
         self.info = self.film.info
         self._pictures = Pictures(options, self.film.frames[-1])
+        self._members = Members(self.film, options)
         self.easel = Easel(device, options, (self.info.width, self.info.height))
         self._replays: OrderedDict[tuple[int, Ground], Replays] = OrderedDict()
         self._fitted: OrderedDict[tuple[int, str], tuple[Worked, Snapshot]] = OrderedDict()
@@ -151,6 +154,8 @@ class Session:
             worked = Worked(stored.mesh, stored.locks)
             return self.easel.fitted(self.picture(frame), worked, model)
         worked = self.worked(frame)
+        if model is self.film.model and worked is self._film_ground(frame):
+            return self.film.snapshot(frame)  # whose colours keep to those of the frames before
         known = self._fitted.get((frame, model.name))
         if known is None or known[0] is not worked:
             known = worked, self.easel.fitted(self.picture(frame), worked, model)
@@ -171,11 +176,11 @@ class Session:
         Raises:
             EditError: If the track holds no such frame.
         """
+        look = painted_regions(self.log, self.film.frames).over(look)
         snapshot = self.shown(frame, look.fitted(self.easel.model), view)
-        needed = look.needs_source
-        return self.easel.drawn(
-            snapshot, self.picture(frame) if needed else None, look, self.film.time(frame)
-        )
+        picture = self.picture(frame) if look.needs_source else None
+        shares = self._members.shares(look, frame, snapshot, is_edited=view == EDITED)
+        return self.easel.drawn(snapshot, picture, look, self.film.time(frame), shares)
 
     def thumbnail(self, frame: int) -> np.ndarray:
         """A small picture of a frame of the film, [rows, columns, 3] uint8."""
@@ -200,6 +205,7 @@ class Session:
         for edit in edits:
             before = worked.get(edit.frame) or self.worked(edit.frame)
             worked[edit.frame] = edit.apply(before)
+            check_style(edit)
         return self._journal.append(edits, after)
 
     def ghost(self, edit: Edit) -> Ghost:
@@ -249,6 +255,7 @@ class Session:
         """Frames of the track were replaced."""
         self.film.close()
         self.film = Film(self.path)
+        self._members = Members(self.film, self.options)
         self._replays.clear()
         self._fitted.clear()
 
@@ -272,6 +279,11 @@ class Session:
         while len(self._replays) > MOST_FRAMES:
             self._replays.popitem(last=False)
         return self._replays[key].after(edits)
+
+    def _film_ground(self, frame: int) -> Worked | None:
+        """A frame of the film as edits are made on it, if any were looked at."""
+        known = self._replays.get((frame, Ground.FILM))
+        return None if known is None else known.ground
 
     def _ground(self, frame: int, ground: Ground) -> Worked:
         if ground is Ground.ANEW:

@@ -111,6 +111,8 @@ function main() {
     element("name").textContent = facts.name;
     stage.frame = isAgain ? stage.frame : facts.frames[0];
     Object.assign(stage, { frames: facts.frames, shots: facts.shots, rate: facts.rate, stem: facts.stem });
+    style.fill(facts.styles, facts.model === "constant" ? "flat" : "gradient");
+    if (isAgain) await style.send();
     element("time").hidden = facts.frames.length < 2;
     element("strip").setAttribute("aria-valuemin", String(facts.frames[0]));
     element("strip").setAttribute("aria-valuemax", String(facts.frames.at(-1)));
@@ -122,7 +124,7 @@ function main() {
   }
 
   fillRail(element("tools"), stage);
-  const film = fillPanel(element("panel"), stage);
+  const { film, style } = fillPanel(element("panel"), stage);
   const scrubber = new Scrubber(element("strip"), stage);
   fillHelp(element("keys"));
   new Pointer(stage);

@@ -53,6 +53,7 @@ export class Stage {
     /** @type {number | null} */
     this.rate = null;
     this.stem = "frame";
+    this.paintStyle = "hatching";
     /** @type {View} */
     this.view = "edited";
     this.player = new Player(this);
@@ -261,8 +262,8 @@ export class Stage {
   shown() {
     const isPicking = this.tool === "edit" || this.tool === "pin";
     const { ghost, pointer } = this;
-    const brush = this.tool === "brush" && pointer
-      ? { at: pointer, radius: this.brush.radius, fresh: ghost?.fresh ?? [], gone: ghost?.gone ?? [], removes: this.shift }
+    const brush = (this.tool === "brush" || this.tool === "paint") && pointer
+      ? { at: pointer, radius: this.brush.radius, fresh: ghost?.fresh ?? [], gone: ghost?.gone ?? [], removes: this.shift && this.tool === "brush" }
       : null;
     return {
       picked: isPicking ? this.picked() : null,
@@ -354,7 +355,10 @@ export class Stage {
   click(button) {
     const picked = this.picked();
     if (!this.mesh || !this.pointer) return;
-    if (this.tool === "brush") {
+    if (this.tool === "paint") {
+      const { x, y } = this.pointer;
+      this.make({ edit: "style_region", at: [x, y], radius: this.brush.radius, style: this.paintStyle });
+    } else if (this.tool === "brush") {
       this.make(this.stroke(this.pointer, button === "right" || this.shift));
     } else if (picked && this.tool === "pin") {
       const plan = button === "right" || this.isHeld(picked) ? "unlock" : "lock";

@@ -1,4 +1,5 @@
 import { FilmPanel } from "../time/film.js";
+import { StylePanel } from "./style.js";
 import { choice, help, section, slider } from "./rows.js";
 
 /** @typedef {import("../stage.js").Stage} Stage */
@@ -29,18 +30,26 @@ function viewSection(stage) {
 /**
  * The brush.
  * @param {Stage} stage
+ * @param {StylePanel} style knows the styles that can be painted
  */
-function brushSection(stage) {
+function brushSection(stage, style) {
   const { brush } = stage;
   const radius = slider({ name: "radius", label: "Radius", title: "Of the brush, in pixels of the picture (wheel, [ and ])", least: 3, most: 400, step: 1, value: brush.radius, changed: (value) => stage.setBrush({ radius: value }) });
   const count = slider({ name: "count", label: "Vertices", title: "How many a touch puts or takes", least: 1, most: 60, step: 1, value: brush.count, changed: (value) => stage.setBrush({ count: value }) });
   const spread = choice({ name: "spread", label: "Falloff", title: "How they are spread (O)", choices: ["uniform", "normal"], value: brush.spread, changed: (value) => stage.setBrush({ spread: value }) });
+  const paint = choice({ name: "paint", label: "Paints", title: "The style that the paint tool (T) gives to triangles", choices: [], value: "", changed: (value) => (stage.paintStyle = value) });
+  stage.watch(() => {
+    const select = /** @type {HTMLSelectElement} */ (paint.row.querySelector("select"));
+    if (select.options.length || !Object.keys(style.styles).length) return;
+    for (const name of Object.keys(style.styles)) select.add(new Option(name, name));
+    select.value = stage.paintStyle;
+  });
   stage.watch(() => {
     radius.set(stage.brush.radius);
     count.set(stage.brush.count);
     spread.set(stage.brush.spread);
   });
-  return section("Brush and region", radius.row, count.row, spread.row, help("Green dots show where vertices would come to be, before you click."));
+  return section("Brush and region", radius.row, count.row, spread.row, paint.row, help("Green dots show where vertices would come to be, before you click."));
 }
 
 /**
@@ -63,6 +72,8 @@ function commandSection(stage) {
  */
 export function fillPanel(panel, stage) {
   const film = new FilmPanel(stage);
-  panel.append(film.element, viewSection(stage), brushSection(stage), commandSection(stage));
-  return film;
+  const style = new StylePanel(stage);
+  const brush = brushSection(stage, style);
+  panel.append(film.element, viewSection(stage), style.element, brush, commandSection(stage));
+  return { film, style };
 }

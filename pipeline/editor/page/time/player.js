@@ -32,8 +32,9 @@ export class Player {
       }
       await new Promise((done) => requestAnimationFrame(done));
     }
+    const isOver = this.isOn; // and nobody paused it
     this.isOn = false;
-    await stage.seek(stage.frame);
+    await stage.seek(isOver ? stage.frames[stage.frames.length - 1] : stage.frame);
   }
 
   pause() {

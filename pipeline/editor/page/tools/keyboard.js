@@ -20,6 +20,7 @@ export class Keyboard {
       a: () => stage.setTool("edit"),
       b: () => stage.setTool("brush"),
       r: () => stage.setTool("region"),
+      t: () => stage.setTool("paint"),
       p: () => this.pin(),
       v: () => stage.setMode("vertex"),
       e: () => stage.setMode("edge"),
@@ -66,7 +67,8 @@ export class Keyboard {
       return;
     }
     if (event.ctrlKey || event.metaKey || event.altKey) return;
-    if (target instanceof HTMLSelectElement || (target instanceof HTMLInputElement && event.key.length > 1)) return;
+    if (target instanceof HTMLSelectElement || isText(target)) return;
+    if (target instanceof HTMLInputElement && event.key.length > 1) return;
     if (!isOnStage && (event.key === "Enter" || event.key === "Tab")) return;
     if (target instanceof HTMLButtonElement && event.key === " ") return;
     if (this.stage.moving && this.type(event)) return;
@@ -141,4 +143,9 @@ export class Keyboard {
     event.preventDefault();
     return true;
   }
+}
+
+/** @param {EventTarget | null} target */
+function isText(target) {
+  return target instanceof HTMLInputElement && target.type !== "range";
 }

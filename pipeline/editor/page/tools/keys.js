@@ -16,6 +16,7 @@ export const HELP = [
     ["[ and ]", "radius of the brush"],
     ["O", "soft falloff of the brush"],
     ["R", "triangulate a region anew"],
+    ["T", "paint a style onto triangles"],
     ["P", "pin and unpin what is under the pointer"],
   ]],
   ["On what is under the pointer", [

@@ -67,7 +67,7 @@ export class Pointer {
   kind(event) {
     const { stage } = this;
     if (event.button === 1 || event.altKey) return "pan";
-    if (stage.tool === "brush") return "paint";
+    if (stage.tool === "brush" || stage.tool === "paint") return "paint";
     if (stage.tool === "region") return "region";
     return event.button === 0 && stage.tool === "edit" && stage.picked()?.kind === "vertex" ? "move" : "click";
   }
@@ -204,7 +204,7 @@ export class Pointer {
     event.preventDefault();
     const { stage } = this;
     const turn = Math.max(-60, Math.min(60, event.deltaMode ? 30 * event.deltaY : event.deltaY));
-    if (stage.tool === "brush" && !event.ctrlKey) {
+    if ((stage.tool === "brush" || stage.tool === "paint") && !event.ctrlKey) {
       stage.setBrush({ radius: Math.round(stage.brush.radius * Math.exp(-turn / 400)) + (turn < 0 ? 1 : 0) });
       return;
     }

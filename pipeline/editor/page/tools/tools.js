@@ -26,6 +26,13 @@ export const TOOLS = [
     icon: '<path d="M4 14c-1-5 3-10 9-10s9 4 7 9-7 4-9 4-2 3-5 3"/>',
   },
   {
+    name: "paint",
+    key: "T",
+    label: "Paint a style onto triangles",
+    hint: "Drag over triangles: they are drawn in the style that the brush paints, through their whole shot. Wheel: radius.",
+    icon: '<path d="M20 4c-5 2-9 6-11 9l2 2c3-2 7-6 9-11zM8 14c-3 0-2 4-5 5 4 2 7 0 7-3z"/>',
+  },
+  {
     name: "pin",
     key: "P",
     label: "Pin",

@@ -1,0 +1,1 @@
+"""What is left when runs are killed, disks are full and files vanish, as a table."""

@@ -1,0 +1,208 @@
+import { choice, help, section, slider } from "./rows.js";
+
+/**
+ * @typedef {import("../stage.js").Stage} Stage
+ * @typedef {{name: string, kind: string, default: any, help?: string, unit?: string, range?: [number, number],
+ *   choices?: string[], form?: string}} Parameter
+ * @typedef {Record<string, {summary: string, parameters: Parameter[]}>} Styles
+ * @typedef {{name: string, values: Record<string, any>, isOpen: boolean}} Layer
+ */
+
+/** Parameters that one looks for first stand first; these every style has. */
+const SHARED = ["opacity", "blend"];
+
+/** Styles over one another, as the registry tells of them. */
+export class StylePanel {
+  /** @param {Stage} stage */
+  constructor(stage) {
+    this.stage = stage;
+    /** @type {Styles} */
+    this.styles = {};
+    /** @type {Layer[]} from top to bottom */
+    this.layers = [];
+    this.list = document.createElement("ol");
+    this.list.className = "layers";
+    this.add = document.createElement("select");
+    this.add.id = "add-style";
+    this.add.setAttribute("aria-label", "Add a style on top");
+    this.add.addEventListener("change", () => this.put(this.add.value));
+    this.element = section("Style", this.list, this.add);
+    this.isSending = false;
+    this.isWanted = false;
+  }
+
+  /**
+   * @param {Styles} styles
+   * @param {string} usual the style that is drawn if none is chosen
+   */
+  fill(styles, usual) {
+    if (this.layers.length) return;
+    this.styles = styles;
+    this.add.replaceChildren(new Option("Add a style on top…", ""), ...Object.keys(styles).map((name) => new Option(name, name)));
+    this.layers = [{ name: usual, values: {}, isOpen: false }];
+    this.renew();
+  }
+
+  /** @param {string} name */
+  put(name) {
+    this.add.value = "";
+    if (!name) return;
+    for (const layer of this.layers) layer.isOpen = false;
+    this.layers.unshift({ name, values: {}, isOpen: true });
+    this.changed();
+  }
+
+  /** The stack as the command line takes it, bottom to top. */
+  get specs() {
+    return this.layers.map(specOf).reverse();
+  }
+
+  changed() {
+    this.renew();
+    this.send();
+  }
+
+  /** Have the newest stack drawn; of those between the last counts. */
+  async send() {
+    this.isWanted = true;
+    if (this.isSending) return;
+    this.isSending = true;
+    while (this.isWanted) {
+      this.isWanted = false;
+      try {
+        await this.stage.connection.ask("style", { styles: this.specs });
+      } catch (error) {
+        this.stage.told.problem(/** @type {Error} */ (error).message);
+      }
+    }
+    this.isSending = false;
+    this.stage.renewCommands();
+  }
+
+  renew() {
+    this.list.replaceChildren(...this.layers.map((layer, place) => this.row(layer, place)));
+  }
+
+  /**
+   * @param {Layer} layer
+   * @param {number} place
+   */
+  row(layer, place) {
+    const row = document.createElement("li");
+    row.draggable = true;
+    row.dataset.style = layer.name;
+    const head = document.createElement("div");
+    const open = document.createElement("button");
+    open.textContent = layer.name;
+    open.title = `${this.styles[layer.name]?.summary ?? ""} (Alt + arrows move it)`;
+    open.setAttribute("aria-expanded", String(layer.isOpen));
+    open.addEventListener("click", () => {
+      layer.isOpen = !layer.isOpen;
+      this.renew();
+    });
+    open.addEventListener("keydown", (event) => {
+      const by = event.altKey ? { ArrowUp: -1, ArrowDown: 1 }[event.key] : undefined;
+      if (by) this.move(place, place + by);
+    });
+    const away = document.createElement("button");
+    away.innerHTML = `×<span class="sr">Take ${layer.name} away</span>`;
+    away.disabled = this.layers.length < 2;
+    away.addEventListener("click", () => {
+      this.layers.splice(place, 1);
+      this.changed();
+    });
+    head.append(open, away);
+    row.append(head);
+    if (layer.isOpen) row.append(...this.parameters(layer));
+    row.addEventListener("dragstart", (event) => event.dataTransfer?.setData("text/plain", String(place)));
+    row.addEventListener("dragover", (event) => event.preventDefault());
+    row.addEventListener("drop", (event) => {
+      event.preventDefault();
+      this.move(Number(event.dataTransfer?.getData("text/plain")), place);
+    });
+    return row;
+  }
+
+  /**
+   * @param {number} from
+   * @param {number} to
+   */
+  move(from, to) {
+    if (!(from in this.layers) || !(to in this.layers) || from === to) return;
+    const [layer] = this.layers.splice(from, 1);
+    this.layers.splice(to, 0, layer);
+    this.changed();
+  }
+
+  /** @param {Layer} layer */
+  parameters(layer) {
+    const told = this.styles[layer.name];
+    const own = told.parameters.filter(({ name }) => !SHARED.includes(name));
+    const shared = told.parameters.filter(({ name }) => SHARED.includes(name));
+    return [help(told.summary), ...[...own, ...shared].map((one) => this.parameter(layer, one))];
+  }
+
+  /**
+   * @param {Layer} layer
+   * @param {Parameter} told
+   */
+  parameter(layer, told) {
+    const value = layer.values[told.name] ?? told.default ?? "";
+    const title = `${told.help ?? ""}${told.unit ? ` [${told.unit}]` : ""}, usually ${told.default}`;
+    const name = `style-${told.name}`;
+    /** @param {any} next */
+    const changed = (next) => {
+      layer.values[told.name] = next;
+      this.send();
+    };
+    if (told.choices) return choice({ name, label: told.name, title, choices: told.choices, value, changed }).row;
+    if (told.range && (told.kind === "float" || told.kind === "int")) {
+      const [least, most] = told.range;
+      const step = told.kind === "int" ? 1 : niceStep(most - least);
+      return slider({ name, label: told.name, title, least, most, step, value, changed }).row;
+    }
+    return this.text(told, name, title, String(value), changed);
+  }
+
+  /**
+   * @param {Parameter} told
+   * @param {string} name
+   * @param {string} title
+   * @param {string} value
+   * @param {(value: string) => void} changed
+   */
+  text(told, name, title, value, changed) {
+    const row = document.createElement("div");
+    row.className = "row";
+    row.title = title;
+    const label = document.createElement("label");
+    label.htmlFor = `set-${name}`;
+    label.textContent = told.name;
+    const input = document.createElement("input");
+    Object.assign(input, { id: `set-${name}`, type: "text", value });
+    input.addEventListener("change", () => changed(input.value));
+    row.append(label, input);
+    if (/^#[0-9a-f]{6}$/i.test(value)) {
+      const color = document.createElement("input");
+      Object.assign(color, { type: "color", value });
+      color.setAttribute("aria-label", `${told.name}, as a colour`);
+      color.addEventListener("input", () => {
+        input.value = color.value;
+        changed(color.value);
+      });
+      row.append(color);
+    }
+    return row;
+  }
+}
+
+/** @param {Layer} layer */
+function specOf({ name, values }) {
+  const pairs = Object.entries(values).filter(([, value]) => value !== "");
+  return pairs.length ? `${name}:${pairs.map(([key, value]) => `${key}=${value}`).join(",")}` : name;
+}
+
+/** @param {number} span */
+function niceStep(span) {
+  return 10 ** Math.floor(Math.log10(span / 100));
+}
