@@ -27,7 +27,7 @@ from tests.kernel_samples import (
 from warp_kernels.color_model import COLOR_MODELS
 from warp_kernels.device.device import Device
 from warp_kernels.device.phase import Phase
-from warp_kernels.device.staging import Rows
+from warp_kernels.device.staging import ArrayRows
 from warp_kernels.energy.sums import SUMS
 from warp_kernels.energy.topology_survey import Survey
 from warp_kernels.energy.workspace import Workspace
@@ -166,7 +166,7 @@ def test_staged_copies_keep_their_order(device: str) -> None:
     threes = np.arange(3000).reshape(1000, 3)
     card.write(second, threes)
     column, rows, some = card.read_all(
-        [Rows(first, 20, column=4), Rows(second, 1000), Rows(first, 6)]
+        [ArrayRows(first, 20, column=4), ArrayRows(second, 1000), ArrayRows(first, 6)]
     )
     np.testing.assert_array_equal(column, [2.0] * 5 + [1.0] * 5 + [0.0] * 10)
     np.testing.assert_array_equal(rows, threes)

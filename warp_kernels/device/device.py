@@ -26,7 +26,7 @@ from warp_kernels.device.kernels import Told, tell_nobody
 from warp_kernels.device.launcher import Launcher, WarpLauncher
 from warp_kernels.device.phase import SMALLEST_PART, Phase
 from warp_kernels.device.runtime import EMULATED, WARP, find_device, unused_card
-from warp_kernels.device.staging import LAUNCHES, Rows, Staging
+from warp_kernels.device.staging import LAUNCHES, ArrayRows, Staging
 from warp_kernels.device.team import Team
 from warp_kernels.errors import TrimotionError
 
@@ -180,9 +180,9 @@ class Device:
 
     def read(self, array: wp.array, count: int) -> np.ndarray:
         """Copy the first `count` rows of a device array to the host."""
-        return self.read_all([Rows(array, count)])[0]
+        return self.read_all([ArrayRows(array, count)])[0]
 
-    def read_all(self, wanted: Sequence[Rows]) -> list[np.ndarray]:
+    def read_all(self, wanted: Sequence[ArrayRows]) -> list[np.ndarray]:
         """Copy the beginnings of several arrays to the host, which costs a card no more than one.
 
         Args:
@@ -232,8 +232,8 @@ def _write_span(
         staging.write(spans[number], np.array([[begin, end]]))
 
 
-def _rows_seen(rows: Rows) -> np.ndarray:
-    """Rows of an array on the CPU as they lie there."""
+def _rows_seen(rows: ArrayRows) -> np.ndarray:
+    """ArrayRows of an array on the CPU as they lie there."""
     seen = _seen_by_host(rows.array)[: rows.count]
     return seen if rows.column is None else seen[:, rows.column]
 

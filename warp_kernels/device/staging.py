@@ -26,7 +26,7 @@ TO_CARD, TO_HOST, LAUNCHES, WAITS = "copies to the card", "copies to the host", 
 
 
 @dataclass(frozen=True, eq=False)
-class Rows:
+class ArrayRows:
     """The beginning of an array of a device."""
 
     array: wp.array
@@ -59,7 +59,7 @@ class Staging:
 
         Args:
             array: Of the device.
-            values: Rows of it, in any type that can be cast to its own; they are copied at once.
+            values: ArrayRows of it, in any type that can be cast to its own; they are copied at once.
         """
         kind, shape = _host_row(array)
         kept = np.empty((len(values), *shape), kind)
@@ -92,7 +92,7 @@ class Staging:
         self._move(self._scatter, 1, rows)
         self._mark_sent()
 
-    def read(self, wanted: Sequence[Rows]) -> list[np.ndarray]:
+    def read(self, wanted: Sequence[ArrayRows]) -> list[np.ndarray]:
         """Copy rows of arrays to the host, in one copy if they are many.
 
         Args:
@@ -195,14 +195,14 @@ def _row_bytes(rows: np.ndarray) -> int:
     return rows.nbytes // max(1, len(rows))
 
 
-def _bytes_of(rows: Rows) -> int:
+def _bytes_of(rows: ArrayRows) -> int:
     """Bytes that are read of rows."""
     kind, shape = _host_row(rows.array)
     shape = shape if rows.column is None else shape[1:]
     return rows.count * int(kind.itemsize * np.prod(shape, dtype=int))
 
 
-def _place_of(rows: Rows, begin: int) -> tuple[int, ...]:
+def _place_of(rows: ArrayRows, begin: int) -> tuple[int, ...]:
     """A row of the table for a kernel that gathers.
 
     Raises:

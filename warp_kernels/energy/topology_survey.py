@@ -4,7 +4,7 @@ import numpy as np
 import warp as wp
 
 from warp_kernels.device.phase import Phase
-from warp_kernels.device.staging import Rows
+from warp_kernels.device.staging import ArrayRows
 from warp_kernels.energy.topology_gains import record_changes
 from warp_kernels.energy.topology_inputs import ground_type
 from warp_kernels.energy.workspace import Workspace
@@ -91,14 +91,14 @@ class Survey:
         device = self._workspace.device
         device.write(self._half_edges, half_edges)
         device.run([self._phase(change, len(half_edges))])
-        return device.read_all([Rows(found, len(half_edges)) for found in self._found(change)])
+        return device.read_all([ArrayRows(found, len(half_edges)) for found in self._found(change)])
 
     def _measure_all(self) -> None:
         """Look at every half-edge for every change."""
         device = self._workspace.device
         device.run([self._phase(change, self._count) for change in CHANGES])
         arrays = [found for change in CHANGES for found in self._found(change)]
-        read = iter(device.read_all([Rows(array, self._count) for array in arrays]))
+        read = iter(device.read_all([ArrayRows(array, self._count) for array in arrays]))
         self._known = {change: [next(read) for _ in self._found(change)] for change in CHANGES}
 
     def _phase(self, change: str, count: int) -> Phase:

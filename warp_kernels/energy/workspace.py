@@ -12,7 +12,7 @@ import warp as wp
 from warp_kernels.color_model import ColorModel
 from warp_kernels.device.device import Device
 from warp_kernels.device.phase import Phase
-from warp_kernels.device.staging import Rows
+from warp_kernels.device.staging import ArrayRows
 from warp_kernels.energy.fit import record_fit
 from warp_kernels.energy.gradient_descent import record_descent
 from warp_kernels.energy.variant_energies import record_energies
@@ -212,8 +212,8 @@ class Workspace:
     def _looked(self) -> list[np.ndarray]:
         """Vertices and energies, read at once: a second copy takes a card as long as the first."""
         if self._seen is None:
-            energies = Rows(self._energies, self._counts[1], column=0)
-            self._seen = self.device.read_all([Rows(self.standing, self._counts[0]), energies])
+            energies = ArrayRows(self._energies, self._counts[1], column=0)
+            self._seen = self.device.read_all([ArrayRows(self.standing, self._counts[0]), energies])
         return self._seen
 
     def moments(self) -> tuple[np.ndarray, np.ndarray]:
@@ -225,7 +225,7 @@ class Workspace:
         self.device.run([self._moments[self._front]])
         count = self._counts[2 if self.sums == "edges" else 1]
         color, area = self.device.read_all(
-            [Rows(self._color_sums, count), Rows(self._area_sums, count)]
+            [ArrayRows(self._color_sums, count), ArrayRows(self._area_sums, count)]
         )
         return color.view(np.int64), area.view(np.int64)
 
@@ -240,7 +240,7 @@ class Workspace:
             self.device.run([self._fit_sums[self._front], self._fit])
             self._fitted = True
         fitted = (self._coefficients, self.fit_energies, self._fit_counts)
-        rows = [Rows(array, self._counts[1]) for array in fitted]
+        rows = [ArrayRows(array, self._counts[1]) for array in fitted]
         coefficients, energies, counts = self.device.read_all(rows)
         return coefficients, energies, counts
 
