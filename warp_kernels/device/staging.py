@@ -59,7 +59,7 @@ class Staging:
 
         Args:
             array: Of the device.
-            values: ArrayRows of it, in any type that can be cast to its own; they are copied at once.
+            values: Rows of it, in any type that can be cast to its own; they are copied at once.
         """
         kind, shape = _host_row(array)
         kept = np.empty((len(values), *shape), kind)

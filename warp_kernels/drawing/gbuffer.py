@@ -78,6 +78,14 @@ def fill_run(
     ...
 
 
+@wp.func
+def strip_of(span: wp.vec2i, samples: int, strip: int, strips: int) -> wp.vec2i:
+    """First row of samples of a strip of rows of pixels, and its height."""
+    rows = (span[1] - span[0]) * samples
+    share = (rows + strips - 1) / strips
+    return wp.vec2i(span[0] * samples + strip * share, wp.min(share, rows - strip * share))
+
+
 @wp.kernel(enable_backward=False)
 def fill_triangles(
     span: wp.array(dtype=wp.vec2i),
@@ -95,16 +103,12 @@ def fill_triangles(
     triangle_out: wp.array2d(dtype=int),
 ):
     """Fill a strip of one triangle, between its long edge and the two short ones."""
-    lane = wp.tid() % lanes
-    strip = wp.tid() / lanes % strips
-    triangle = wp.tid() / lanes / strips
+    lane, triangle = wp.tid() % lanes, wp.tid() / lanes / strips
     if triangle >= count[0]:
         return
     width = triangle_out.shape[1]
-    rows = (span[0][1] - span[0][0]) * samples
-    share = (rows + strips - 1) / strips
-    begin = span[0][0] * samples + strip * share
-    height = wp.min(share, rows - strip * share)
+    strip = strip_of(span[0], samples, wp.tid() / lanes % strips, strips)
+    begin, height = strip[0], strip[1]
     corners = triangles[triangle]
     above = wp.vec2i(0, (first_row + begin) * _UNIT)
     top = to_fixed(wp.cw_mul(vertices[corners[0]], scale)) - above
