@@ -2,18 +2,25 @@
 
     python benchmarks/vector_exact.py [TRACK.mtrk ...] [--styles flat edges ...] [--keep FOLDER]
 
-Renderers: resvg (PyPI resvg-py), Cairo (PyPI cairosvg) and Chromium (`chromium` on the path); those
-that are missing are left out. A track is made of the sample picture if none is named. Two pictures
-are compared with: what is drawn at the same size (`own`), whose pixels are means of 3 x 3 samples,
-and the same drawn 4 times as large (`exact`), whose pixels are means of 12 x 12.
+Renderers: resvg (PyPI resvg-py), Cairo (PyPI cairosvg), Chromium (`chromium` on the path) and
+Inkscape (`inkscape`); those that are missing are left out. A track is made of the sample picture if
+none is named. What they show of a document is compared with
+
+- `own`: what this program draws at the same size, with 3 x 3 samples a pixel, as it does by itself;
+- `smooth`: the same with `--samples 4`;
+- `itself`: what the renderer shows of the document at FINER times the size, averaged: it says how
+  exact its own borders are, whatever the document holds.
+
+Figures are percent of the pixels within 2 code values, and how many are transparent.
 """
 
 import argparse
+import importlib.util
 import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import cv2
@@ -34,8 +41,8 @@ STACKS = {
     "paper": ["paper:grain=0"],
 }
 """Stacks of styles by a short name."""
-FINER = 4
-"""How many times as large the picture is drawn that is taken for exact."""
+FINER = {1: 8, 3: 4}
+"""How many times as large a renderer's own measure is, by the scale."""
 NEAR = 2
 """Code values."""
 
@@ -78,16 +85,26 @@ def read(png: bytes) -> np.ndarray:
     return found[..., [2, 1, 0, 3]]
 
 
-def renderers() -> Iterator[tuple[str, Callable[[Path, int], np.ndarray]]]:
-    """Those that are here."""
-    for name, draw, module in (("resvg", resvg, "resvg_py"), ("cairo", cairo, "cairosvg")):
-        try:
-            __import__(module)
-        except ImportError:
-            continue
-        yield name, draw
-    if shutil.which("chromium"):
-        yield "chromium", chromium
+def inkscape(svg: Path, scale: int) -> np.ndarray:
+    with tempfile.TemporaryDirectory() as folder:
+        target = Path(folder) / "shown.png"
+        command = ["inkscape", "--export-type=png", f"--export-filename={target}"]
+        command += [f"--export-dpi={96 * scale}", str(svg)]
+        subprocess.run(command, check=True, capture_output=True, timeout=300)
+        return read(target.read_bytes())
+
+
+NEEDED = {"resvg": "resvg_py", "cairo": "cairosvg"}
+"""Modules of renderers that are no programs."""
+RENDERERS = {"resvg": resvg, "cairo": cairo, "chromium": chromium, "inkscape": inkscape}
+"""What shows a document at so many pixels a px, [H, W, 4] uint8."""
+
+
+def is_here(name: str) -> bool:
+    """Whether a renderer is installed."""
+    if name in NEEDED:
+        return importlib.util.find_spec(NEEDED[name]) is not None
+    return shutil.which(name) is not None
 
 
 def averaged(picture: np.ndarray, times: int) -> np.ndarray:
@@ -97,50 +114,41 @@ def averaged(picture: np.ndarray, times: int) -> np.ndarray:
     return np.rint(parts.mean(axis=(1, 3), dtype=np.float64)).astype(np.int64)
 
 
-def drawn(track: Path, frame: int, styles: list[str], scale: int, folder: Path) -> np.ndarray:
-    """What this program draws, [H, W, 3]."""
-    target = folder / f"own{scale}.png"
-    trimotion.render(track, target, styles=styles, frames=frame, scale=scale, overwrite=True)
-    return read(target.read_bytes())[..., :3].astype(np.int64)
+def near(one: np.ndarray, other: np.ndarray) -> float:
+    """Percent of the pixels that are alike."""
+    off = np.abs(one[..., :3].astype(np.int64) - other[..., :3]).max(axis=2)
+    return 100.0 * float((off <= NEAR).mean())
 
 
-def row(found: np.ndarray, own: np.ndarray, exact: np.ndarray | None) -> str:
-    """Shares of near pixels, transparent ones, and the largest difference."""
-    far = np.abs(found[..., :3].astype(np.int64) - own).max(axis=2)
-    text = f"own {100 * (far <= NEAR).mean():6.2f} %"
-    if exact is not None:
-        off = np.abs(found[..., :3].astype(np.int64) - exact).max(axis=2)
-        text += f"  exact {100 * (off <= NEAR).mean():6.2f} %"
-    clear = int((found[..., 3] < 255).sum())
-    return f"{text}  mean {far.mean():5.2f}  most {far.max():3d}  transparent {clear}"
+Row = tuple[str, str, int, float, float, float, int]
+"""Style, renderer, scale; near `own`, `smooth` and `itself`; transparent pixels."""
 
 
-def measure(track: Path, frame: int, name: str, scales: list[int], keep: Path | None) -> None:
-    """Print a row for each renderer and size."""
-    with tempfile.TemporaryDirectory() as made:
+def measure(track: Path, frame: int, name: str, given: argparse.Namespace) -> Iterator[Row]:
+    """Rows of one frame in one stack."""
+    keep: Path | None = given.keep
+    with tempfile.TemporaryDirectory() as made, trimotion.open_track(track) as opened:
         folder = keep or Path(made)
         folder.mkdir(parents=True, exist_ok=True)
         svg = folder / f"{track.stem}_{frame}_{name}.svg"
-        options = {"styles": STACKS[name], "frames": frame, "overwrite": True}
-        trimotion.render(track, svg, **options)
-        print(f"{track.stem} {frame} {name}: {svg.stat().st_size / 1000:.0f} kB")
-        for scale in scales:
-            own = drawn(track, frame, STACKS[name], scale, folder)
-            exact = None
-            if max(own.shape) * FINER <= 8192:
-                finer = drawn(track, frame, STACKS[name], scale * FINER, folder)
-                exact = averaged(finer, FINER)
-                full = np.full((*own.shape[:2], 1), 255)
-                print(f"  {'drawn':9} {scale}x {row(np.dstack([own, full]), own, exact)}")
-            for title, render in renderers():
+        trimotion.render(track, svg, styles=STACKS[name], frames=frame, overwrite=True)
+        one = opened[frame]
+        for scale in given.scales:
+            own, smooth = (one.draw(STACKS[name], scale, samples=samples) for samples in (3, 4))
+            for title in given.renderers:
+                render = RENDERERS[title]
                 found = render(svg, scale)
-                print(f"  {title:9} {scale}x {row(found, own, exact)}", flush=True)
+                limit = float("nan")
+                if given.limits and title in ("resvg", "cairo"):
+                    limit = near(found, averaged(render(svg, scale * FINER[scale]), FINER[scale]))
+                clear = int((found[..., 3] < 255).sum())
+                yield name, title, scale, near(found, own), near(found, smooth), limit, clear
                 if keep:
                     shown = folder / f"{svg.stem}_{title}_{scale}x.png"
                     cv2.imwrite(str(shown), found[..., [2, 1, 0, 3]])
 
 
-def seams() -> None:
+def seams(names: list[str]) -> None:
     """Two triangles of one colour, at many angles and zooms: no pixel may differ from it."""
     from fractions import Fraction
 
@@ -172,9 +180,9 @@ def seams() -> None:
             one = Svg(film)
             one.add(Figure(snapshot, 0, Fraction(0), paint_of(snapshot)))
             one.save(svg)
-            for title, render in renderers():
+            for title in names:
                 for scale in (1, 2, 3, 7):
-                    found = render(svg, scale)
+                    found = RENDERERS[title](svg, scale)
                     off = np.abs(found.astype(int) - [200, 200, 200, 255]).max(axis=2)
                     if off.any():
                         told = f"{(off > 0).sum()} pixels, by {off.max()} at most"
@@ -182,29 +190,47 @@ def seams() -> None:
     print("seams between triangles of one colour: looked for at 4 angles, 4 zooms")
 
 
+def told(rows: list[Row]) -> None:
+    """Print means over all frames, and the least of them."""
+    print("\nstyle      renderer   scale    own          smooth       itself  transparent")
+    kinds = dict.fromkeys(row[:3] for row in rows)
+    for kind in kinds:
+        own, smooth, limit, clear = np.array([row[3:] for row in rows if row[:3] == kind]).T
+        style, title, scale = kind
+        print(
+            f"{style:10} {title:10} {scale}x {own.mean():7.2f} ({own.min():5.1f})"
+            f"{smooth.mean():7.2f} ({smooth.min():5.1f}){limit.mean():8.2f} {int(clear.sum()):6d}"
+        )
+
+
 def main() -> None:
     """Print the tables."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("tracks", nargs="*", type=Path)
     parser.add_argument("--styles", nargs="*", default=list(STACKS), choices=list(STACKS))
-    parser.add_argument("--frames", nargs="*", type=int)
     parser.add_argument("--scales", nargs="*", type=int, default=[1, 3])
+    parser.add_argument("--limits", action="store_true", help="also how exact a renderer is")
     parser.add_argument("--keep", type=Path)
+    here = [name for name in RENDERERS if is_here(name)]
+    parser.add_argument("--renderers", nargs="*", default=here, choices=here)
     given = parser.parse_args()
     if not given.tracks:
-        seams()
+        seams(given.renderers)
     with tempfile.TemporaryDirectory() as folder:
         tracks = given.tracks
         if not tracks:
             tracks = [Path(folder) / "astronaut.mtrk"]
             picture = ROOT / "sample_videos" / "astronaut.jpg"
             trimotion.solve(picture, tracks[0], triangles=700)
+        rows: list[Row] = []
         for track in tracks:
             with trimotion.open_track(track) as opened:
-                frames = given.frames or [next(iter(opened)).frame]
-            for frame in frames:
-                for name in given.styles:
-                    measure(track, frame, name, given.scales, given.keep)
+                frame = next(iter(opened)).frame
+            for name in given.styles:
+                for row in measure(track, frame, name, given):
+                    rows.append(row)
+                    print(track.stem, *row[:3], *(f"{x:.2f}" for x in row[3:6]), row[6], flush=True)
+        told(rows)
 
 
 if __name__ == "__main__":

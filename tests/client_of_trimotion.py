@@ -46,6 +46,7 @@ def look(path: Path) -> np.ndarray:
         total = sum(len(one.triangles) for one in opened)
         last: trimotion.Triangulation = opened[opened.frames[-1]]
         print(total, last.frame, last.shot, last.time, last.size, last.colors[0])
+        print(last.save(path.with_suffix(".svg"), ["flat", "edges"], svg_precision=1))
         return last.draw(["flat", "edges"], scale=2)
 
 

@@ -2,6 +2,7 @@
 
 import csv
 import re
+import tempfile
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
@@ -171,6 +172,37 @@ def test_a_palette_is_merged_and_toned(track: Path) -> None:
     fills = re.findall(r'<path [^>]*fill="(#\w+)"', path.read_text())
     assert set(fills) <= {"#000000", "#ffffff"}
     assert 1 < len(fills) < 40
+
+
+@pytest.mark.parametrize("ending", sorted(FORMATS))
+def test_a_frame_of_a_program_is_written_as_that_of_a_track(track: Path, ending: str) -> None:
+    style = "flat" if "flat" in format_of(f"a{ending}").styles else "edges"
+    one = trimotion.open_track(track)[0]
+    target = track.parent / f"saved{ending}"
+    assert one.save(target, style) == []
+    with pytest.raises(OutputError, match="overwrite=True"):
+        one.save(target, style)
+    drawn = written(track, f"drawn{ending}", styles=style, frames=0)
+    if ending in (".svg", ".dxf", ".ply", ".obj", ".csv"):
+        lines = [path.read_text("latin-1").splitlines() for path in (target, drawn)]
+        differing = [pair for pair in zip(*lines, strict=True) if pair[0] != pair[1]]
+        # the name of the source is all that is not there
+        assert all(line[:2] in ("<t", "o ") for p in differing for line in p)
+
+
+def test_a_picture_of_a_program_is_written() -> None:
+    y, x = np.mgrid[:40, :60]
+    pixels = np.stack([4 * x, 6 * y, 0 * x + 60], axis=2).astype(np.uint8)
+    one = trimotion.triangulate(pixels, triangles=12)
+    with tempfile.TemporaryDirectory() as folder:
+        target = Path(folder) / "a.svg"
+        told = one.save(target, ["gradient", "edges"], scale=2, svg_gradients="plain")
+        assert len(told) == 1
+        assert "single gradients are off" in told[0]
+        root = ElementTree.parse(target).getroot()
+        assert (root.get("width"), root.get("viewBox")) == ("120", "0 0 60 40")
+        with pytest.raises(OptionError, match="draw makes pixels"):
+            one.save(Path(folder) / "a.png")
 
 
 REFUSED = [

@@ -1,13 +1,18 @@
 """`trimotion info`: lines for people, JSON for programs."""
 
 import json
+from dataclasses import fields
 from pathlib import Path
 
 import cv2
+import jsonschema
 import numpy as np
 import pytest
 
 from pipeline.cli import main
+from stages.media import MediaInfo
+from tests import media_samples as samples
+from tests.tracks import solve_to, write_clip
 
 CLIP = Path(__file__).parents[1] / "sample_videos" / "shapes.mp4"
 
@@ -63,3 +68,22 @@ def test_unreadable_file_is_one_line(tmp_path: Path, capsys) -> None:
         assert captured.out == ""
         assert captured.err.startswith(f"trimotion: error: {name}: ")
         assert captured.err.count("\n") == 1
+
+
+def test_json_keeps_to_its_schema(tmp_path: Path, capsys) -> None:
+    """Films, stills, numbered stills and tracks; another key or kind of value is refused."""
+    schema = json.loads((CLIP.parents[1] / "docs" / "info.schema.json").read_text("utf-8"))
+    validator = jsonschema.Draft202012Validator(schema)
+    validator.check_schema(schema)
+    for number in (1, 2):
+        samples.write_still(tmp_path / f"s_{number:02d}.png", samples.picture(32, 24))
+    clip = write_clip(tmp_path / "clip.mp4")
+    solve_to(tmp_path / "t.mtrk", clip, "0-2")
+    for name in (clip, CLIP, tmp_path / "s_01.png", tmp_path / "s_##.png", tmp_path / "t.mtrk"):
+        assert main(["info", str(name), "--json"]) == 0
+        printed = json.loads(capsys.readouterr().out)
+        validator.validate(printed)
+        for change in ({"unknown": 1}, {"kind": "other"}):
+            assert not validator.is_valid({**printed, **change})
+    described = {key for part in schema["$defs"].values() for key in part["properties"]}
+    assert {field.name for field in fields(MediaInfo)} <= described

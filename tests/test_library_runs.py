@@ -2,6 +2,7 @@
 
 import asyncio
 import gc
+import logging
 import os
 import subprocess
 import sys
@@ -46,6 +47,23 @@ def test_animate_writes_what_the_command_writes(clip: Path, tmp_path: Path, capf
     assert result.seconds > 0
     captured = capfd.readouterr()
     assert (captured.out, captured.err) == ("", "")
+
+
+def test_calls_log_to_who_listens(clip: Path, tmp_path: Path, caplog, capfd) -> None:
+    """Frames, choices and damage by their levels; the summary comes last."""
+    stills = tmp_path / "s_##.png"
+    with caplog.at_level(logging.DEBUG, "trimotion"):
+        result = trimotion.animate(clip, stills, frames="1-2", **QUICK)
+    told = [(r.levelname, r.getMessage()) for r in caplog.records if r.name == "trimotion"]
+    first = next(text for level, text in told if level == "DEBUG")
+    assert first.startswith("frame 1 of 2, rmse ")
+    assert [text for level, text in told if level == "INFO"] == [
+        *(f"{clip}: {note}" for note in result.notes),
+        told[-1][1],
+    ]
+    assert f"{clip}: 2 frames in " in told[-1][1]
+    assert result.notes
+    assert capfd.readouterr() == ("", "")
 
 
 def test_solve_render_measure(clip: Path, tmp_path: Path) -> None:

@@ -45,23 +45,44 @@ def drawn(
     """
     values = values_of(given)
     look, run = fill(Look, values), fill(Run, values)
-    styles, fitted = look.shown_styles(model), look.fitted(model)
     size = (snapshot.mesh.width, snapshot.mesh.height)
     framing = look.framing_for(size, Fraction(1))
     if time is None:
         check_moment(look.moves)
-    is_short = fitted.degree > snapshot.model.degree
-    if frame is None and (is_short or look.needs_source):
-        names = ", ".join(type(style).__name__.lower() for style in styles)
-        raise OptionError(
-            f"styles: {names} need the picture, and a track holds none; draw the track by render"
-        )
+    snapshot = suited(snapshot, frame, look, model, run)
     with opened_device(run.device, run.threads) as device:
-        if frame is not None and fitted != snapshot.model:
-            options = TriangulateOptions(color=model.name)
-            snapshot = Triangulator(device, size, options, fitted).fit(frame, snapshot.mesh)
         wardrobe = Wardrobe(device, size, framing.picture, look, model)
         source = None if frame is None else frame.pixels
         view = Posed(snapshot, None, source, {}, None, None, {}, time or 0.0)
         pixels = wardrobe.draw(look, view)
     return framed(pixels, framing, look.backdrop(model))
+
+
+def suited(
+    snapshot: Snapshot, frame: Frame | None, look: Look, model: ColorModel, run: Run
+) -> Snapshot:
+    """A snapshot in the colours that a look shows.
+
+    Args:
+        snapshot: The triangles and their colours.
+        frame: The picture, or None if it was not kept.
+        look: The look.
+        model: The colour model that was optimised.
+        run: Where kernels run.
+
+    Raises:
+        OptionError: If the picture is needed and not there.
+    """
+    fitted = look.fitted(model)
+    is_short = fitted.degree > snapshot.model.degree
+    if frame is None and (is_short or look.needs_source):
+        names = ", ".join(type(style).__name__.lower() for style in look.shown_styles(model))
+        raise OptionError(
+            f"styles: {names} need the picture, and a track holds none; draw the track by render"
+        )
+    if frame is None or fitted == snapshot.model:
+        return snapshot
+    size, options = frame.pixels.shape[1::-1], TriangulateOptions(color=model.name)
+    with opened_device(run.device, run.threads) as device:
+        triangulator = Triangulator(device, (size[0], size[1]), options, fitted)
+        return triangulator.fit(frame, snapshot.mesh)

@@ -156,6 +156,25 @@ class DrawKeywords(DeviceKeywords, total=False):
     background: str | None
 
 
+class SaveKeywords(DeviceKeywords, total=False):
+    """How one frame is written as shapes."""
+
+    palette: Name | None
+    grade: str | None
+    size: str | tuple[int, int] | None
+    scale: float | None
+    fit: str
+    background: str | None
+    overwrite: bool
+    svg_precision: int
+    svg_merge: bool
+    svg_gradients: str
+    mm: float
+    relief: str | None
+    lottie_limit: int
+    usd_single: bool
+
+
 def keyword_of(option: Option) -> str:
     """The keyword of an option: what can be repeated is a list and has the name of one.
 
@@ -190,6 +209,13 @@ DRAWN = (
 )
 """Options that say how one frame is drawn."""
 
+SAVED = (
+    *("palette", "grade", "output_size", "scale", "fit", "background", "overwrite"),
+    *("svg_precision", "svg_merge", "svg_gradients", "mm", "relief", "lottie_limit"),
+    *("usd_single", "device", "threads"),
+)
+"""Options that say how one frame is written as shapes, beside its styles."""
+
 TAKEN: dict[str, Callable[[Option], bool]] = {
     **{name: COMMAND_OPTIONS[name] for name in ("animate", "solve", "render", "measure")},
     "triangulate": lambda option: _for_pictures(option) or option.dest == "edits",
@@ -198,6 +224,7 @@ TAKEN: dict[str, Callable[[Option], bool]] = {
         and (_for_pictures(option) or option.group in ("triangles", "motion"))
     ),
     "draw": lambda option: option.dest in DRAWN,
+    "save": lambda option: option.dest in SAVED,
 }
 """Which options a function takes."""
 
@@ -209,6 +236,7 @@ KEYWORDS: dict[str, Any] = {
     "triangulate": PictureKeywords,
     "Animator": AnimatorKeywords,
     "draw": DrawKeywords,
+    "save": SaveKeywords,
 }
 """Their types."""
 

@@ -40,16 +40,17 @@ def frame_of(pixels: Any, index: int) -> Frame:
     return Frame(index, index, RATE, own)
 
 
-def info_of(size: tuple[int, int], kind: str) -> MediaInfo:
+def info_of(size: tuple[int, int], kind: str, path: Path = Path()) -> MediaInfo:
     """What is known about a source that is no file.
 
     Args:
         size: Width and height of its pictures [px].
         kind: `image` for one picture, `video` for frames that follow each other.
+        path: A name for it.
     """
     width, height = size
     return MediaInfo(
-        path=Path(),
+        path=path,
         kind=kind,
         container="",
         codec="",

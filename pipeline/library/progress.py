@@ -4,6 +4,7 @@ import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from pipeline.library.log import log_frame
 from pipeline.progress import Progress, open_progress
 from warp_kernels.errors import OptionError
 
@@ -51,6 +52,14 @@ class _Silent(Progress):
     def warn(self, text: str) -> None:
         """Keep a warning to the result."""
 
+    def frame(self, done: int, total: int | None, triangles: int, rmse: float) -> None:
+        """Log that a frame is finished."""
+        log_frame(done, total, rmse)
+
+    def compared(self, done: int, total: int | None, rmse: float) -> None:
+        """Log that a frame is compared."""
+        log_frame(done, total, rmse)
+
 
 class _Callback(_Silent):
     """Tells a function; what that raises ends the run."""
@@ -61,8 +70,10 @@ class _Callback(_Silent):
 
     def frame(self, done: int, total: int | None, triangles: int, rmse: float) -> None:
         """Tell that a frame is finished."""
+        super().frame(done, total, triangles, rmse)
         self._told(FrameDone(done, total, triangles, rmse))
 
     def compared(self, done: int, total: int | None, rmse: float) -> None:
         """Tell that a frame is compared."""
+        super().compared(done, total, rmse)
         self._told(FrameDone(done, total, None, rmse))

@@ -15,6 +15,7 @@ from pipeline.library.keywords import (
     RenderKeywords,
     SolveKeywords,
 )
+from pipeline.library.log import log_result
 from pipeline.library.processes import check_processes, explained_loss
 from pipeline.library.progress import Told, progress_for
 from pipeline.library.result import Result
@@ -50,7 +51,9 @@ def animate(
         from pipeline.farm.runners import runner_for
         from pipeline.loop.animate import animate as run
 
-        return _result(run(job, told, runner_for(job.run)), job.output.path, told)
+        return _result(
+            Path(job.solve.source), run(job, told, runner_for(job.run)), job.output.path, told
+        )
 
 
 @with_keywords("solve")
@@ -79,7 +82,7 @@ def solve(
 
         job = with_course(job)
         solved = run(job.solve, job.output, job.run, told, runner=runner_for(job.run))
-        return _result(solved, job.output.track, told)
+        return _result(Path(job.solve.source), solved, job.output.track, told)
 
 
 @with_keywords("render")
@@ -118,7 +121,7 @@ def render(
     with TrackReader(path) as reader, progress_for(progress) as told:
         made = render_job(reader, frames, staged(look), written, run, moved)
         drawn = draw(made.job, reader, made.info, told)
-        return _result(drawn, made.job.output.path, told, made.notes, made.warnings)
+        return _result(path, drawn, made.job.output.path, told, made.notes, made.warnings)
 
 
 @with_keywords("measure")
@@ -172,6 +175,7 @@ def _job(function: str, source: Name, options: Mapping[str, Any], **fixed: objec
 
 
 def _result(
+    source: Path,
     animated: "Animated",
     output: Path | None,
     told: Progress,
@@ -188,6 +192,7 @@ def _result(
         notes=tuple(in_keywords(note) for note in (*notes, *animated.notes)),
         warnings=tuple(in_keywords(text) for text in (*warnings, *animated.warnings)),
     )
+    log_result(source, result)
     for text in result.warnings:
         told.warn(text)
     told.finish(Summary(result.frames, result.seconds, result.mean_rmse, output))

@@ -3,18 +3,21 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from pathlib import Path
+from typing import Any, Unpack
 
 import numpy as np
 
 from pipeline.library.draw import drawn
-from pipeline.library.given import given_values
+from pipeline.library.given import file_name, given_values
+from pipeline.library.keywords import Name, SaveKeywords
 from pipeline.library.wording import worded
 from stages.frame import Frame
 from stages.look.paint import paint_of
 from stages.media.writing.still_writer import encode_still
 from stages.snapshot import Snapshot
 from warp_kernels.color_model import COLOR_MODELS
+from warp_kernels.limits import SAMPLES
 
 
 @dataclass(frozen=True)
@@ -108,6 +111,7 @@ class Triangulation:
         scale: float | None = None,
         *,
         size: str | tuple[int, int] | None = None,
+        samples: int = SAMPLES,
         fit: str = "contain",
         background: str | None = None,
         moves: str | Sequence[str] = (),
@@ -123,6 +127,7 @@ class Triangulation:
                 triangles in their own colours if left out.
             scale: Size of what is drawn relative to the picture.
             size: Width and height instead [px], or a text as on the command line: `1080x`.
+            samples: Samples of a pixel, across and down each: 4 makes borders smoother.
             fit: How the picture gets into another shape: `contain`, `cover` or `stretch`.
             background: Colour of bars, and of what transparent styles leave open.
             moves: How its triangles move, one or several: `explode:amount=0.3`.
@@ -140,6 +145,7 @@ class Triangulation:
         """
         origin = self._origin
         options: dict[str, Any] = {"styles": styles, "scale": scale, "size": size}
+        options["samples"] = samples
         options |= {"fit": fit, "background": background, "moves": moves}
         options |= {"palette": palette, "grade": grade}
         options["device"] = origin.device if device is None else device
@@ -147,6 +153,39 @@ class Triangulation:
         model = COLOR_MODELS[origin.color]
         return drawn(
             self._snapshot, origin.frame, origin.time, model, given_values("draw", options)
+        )
+
+    @worded()
+    def save(
+        self, path: Name, styles: str | Sequence[str] = (), **options: Unpack[SaveKeywords]
+    ) -> list[str]:
+        """Write it as shapes and numbers: `.svg`, `.dxf`, `.glb`, `.npz` and others.
+
+        Args:
+            path: The file; its ending says how it is written.
+            styles: As `draw` takes them; a format holds some of them.
+            options: As on the command line: `mm=200`, `svg_merge=True`, `overwrite=True`.
+
+        Returns:
+            Choices that were made, one sentence each.
+
+        Raises:
+            OptionError: If a value is impossible, or the format cannot hold the look.
+            OutputError: If the file cannot be written, or is there already.
+        """
+        origin = self._origin
+        given = given_values("save", options)
+        given |= given_values("draw", {"styles": styles})
+        given = {"device": origin.device, "threads": origin.threads, **given}
+        from pipeline.library.shapes import written
+
+        return written(
+            self._snapshot,
+            origin.frame,
+            origin.shot,
+            COLOR_MODELS[origin.color],
+            Path(file_name("path", path)),
+            given,
         )
 
     def _repr_png_(self) -> bytes:
