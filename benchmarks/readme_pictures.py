@@ -89,6 +89,14 @@ PICTURES: dict[str, Picture] = {
         quality=84,
     ),
     "music_plan": Picture([stills("out/music_plan.png")], 1600, quality=86),
+    "moves": Picture(
+        [
+            stills("out/assembles.png", "out/explodes.png", "out/shatters.png"),
+            stills("out/pulses.png", "out/waves.png", "out/jitters.png"),
+        ],
+        400,
+        quality=86,
+    ),
     "pulse": Picture([of("out/pulse.mp4", 3, 12, 43, 50)], 480),
     "build-up": Picture([of("out/build-up.mp4", 0, 25, 45, 72)], 480),
     "ink-to-colour": Picture([of("out/ink-to-colour.mp4", 10, 28, 45, 65)], 480, quality=86),
@@ -137,6 +145,10 @@ def look(cell: Cell, picture: Picture) -> np.ndarray:
     return scaled[top : top + height, left : left + width]
 
 
+COPIED = {"poster": "out/poster.svg", "stretch": "out/stretch.gif"}
+"""What is shown as it was made: a film and a drawing."""
+
+
 def joined(parts: Sequence[np.ndarray], axis: int, gap: int) -> np.ndarray:
     """Put pictures [h x w x 3] beside (axis 1) or below (axis 0) each other, white between them."""
     shape = list(parts[0].shape)
@@ -158,7 +170,7 @@ def draw(name: str) -> None:
 
 def main() -> int:
     """Read the command line and draw."""
-    names = [*PICTURES, "stretch"]
+    names = [*PICTURES, *COPIED]
     parser = argparse.ArgumentParser(description="Draw the pictures of README and docs/.")
     parser.add_argument("names", nargs="*", metavar="NAME", help=f"of {', '.join(names)}")
     parser.add_argument("--keep", action="store_true", help="take files of out/ as they are")
@@ -169,9 +181,10 @@ def main() -> int:
     (ROOT / "out").mkdir(exist_ok=True)
     made: set[str] = set()
     for name in options.names or names:
-        if name == "stretch":  # a film, shown as it was made
-            make("out/stretch.gif", made, options.keep)
-            (IMAGES / "stretch.gif").write_bytes((ROOT / "out/stretch.gif").read_bytes())
+        if name in COPIED:
+            made_file = ROOT / COPIED[name]
+            make(COPIED[name], made, options.keep)
+            (IMAGES / made_file.name).write_bytes(made_file.read_bytes())
             continue
         for file, _ in (cell for row in PICTURES[name].rows for cell in row):
             make(file, made, options.keep)

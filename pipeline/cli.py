@@ -142,7 +142,9 @@ def run_join(arguments: argparse.Namespace) -> None:
     from pipeline.progress import tell
 
     parts = [Path(name) for name in arguments.tracks]
-    joined = join_tracks(parts, Path(arguments.output), overwrite=arguments.overwrite)
+    joined = join_tracks(
+        parts, Path(arguments.output), overwrite=arguments.overwrite, blend=arguments.blend
+    )
     if not arguments.quiet:
         tell(joined, sys.stderr)
 

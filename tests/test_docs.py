@@ -169,9 +169,16 @@ def test_figures_name_files_that_a_command_makes(page: Path) -> None:
 
 def test_pictures_are_made_by_commands_of_the_pages() -> None:
     """Those of docs/images but a few, and each from files that a page's command writes."""
-    painted = {"face_weights", "rabbit", "relief"}  # the last by Blender, see benchmarks/exchange
-    drawn = {*readme_pictures.PICTURES, "stretch"}
+    painted = {
+        "face_weights",
+        "rabbit",
+        "relief",
+        "editor",
+    }  # two by own programs
+    drawn = {*readme_pictures.PICTURES, *readme_pictures.COPIED}
     assert drawn == {path.stem for path in readme_pictures.IMAGES.iterdir()} - painted
     for picture in readme_pictures.PICTURES.values():
         for file in {file for row in picture.rows for file, _ in row if file.startswith("out/")}:
             assert_can_be_made(file)
+    for file in readme_pictures.COPIED.values():
+        assert_can_be_made(file)

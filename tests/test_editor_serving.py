@@ -1,18 +1,27 @@
 """The editor's server: who is let in, what is refused, and that it lives on."""
 
 import json
+import signal
+import subprocess
+import sys
 from collections.abc import Iterator
-from contextlib import ExitStack
+from contextlib import ExitStack, closing
+from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import ClientConnection, connect
 
-from pipeline.editor.serving.address import Address
+from pipeline.cli import main
+from pipeline.editor.serving.address import Address, listening
 from pipeline.editor.serving.pace import Pace
 from pipeline.editor.wire.asked import AskError, read_asked
-from tests.editing import Served, raw_answer, served, write_job
+from pipeline.options.edit_log import EditLog
+from stages.hand.worked import Worked
+from tests import media_samples as samples
+from tests.editing import Served, opened, raw_answer, served, write_job
 
 
 @pytest.fixture(scope="module")
@@ -241,3 +250,67 @@ def test_two_windows_see_one_job(server: Served) -> None:
         late = ask(other, "edit", edits=[{**edit, "at": [70.0, 50.0]}], after=before)
         assert "another window went on" in late["error"]
         assert ask(other, "undo") == {"re": 1, "frame": 0}
+
+
+def test_a_killed_server_loses_nothing(tmp_path: Path) -> None:
+    """All that was acknowledged is in force afterwards, and the mesh is as it was shown."""
+    track = write_job(tmp_path)
+    words = [sys.executable, "-m", "trimotion", "edit", str(track), "--no-open", "--quiet"]
+    with subprocess.Popen(words, stdout=subprocess.PIPE, text=True) as program:
+        assert program.stdout is not None
+        url = program.stdout.readline().strip()
+        with connect(f"{url.replace('http', 'ws', 1)}socket") as window:
+            number = ask(window, "hello")["state"]["number"]
+            for at in ([40.0, 30.0], [70.0, 50.0]):
+                edit = {"edit": "insert", "frame": 0, "at": at, "radius": 9, "count": 3}
+                number = ask(window, "edit", edits=[edit], after=number)["number"]
+            last = {"edit": "flip_edge", "frame": 0, "at": [20.0, 20.0]}
+            window.send(json.dumps({"number": 9, "ask": "edit", "edits": [last]}))
+            program.kill()
+        assert program.wait(timeout=30) == -signal.SIGKILL
+    session = opened(track)
+    edits = session.log.edits
+    assert [type(edit).__name__ for edit in edits][:2] == ["Insert", "Insert"]
+    assert len(edits) <= 3
+    ground = session.film.snapshot(0).mesh
+    again = EditLog(edits).replay(0, Worked(ground)).worked.mesh
+    assert np.array_equal(session.worked(0).mesh.vertices, again.vertices)
+    session.close()
+
+
+def test_ctrl_c_ends_it_in_peace(tmp_path: Path) -> None:
+    """All is saved at any time: the exit code says that all is well."""
+    track = write_job(tmp_path)
+    words = [sys.executable, "-m", "trimotion", "edit", str(track), "--no-open"]
+    with subprocess.Popen(
+        words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    ) as program:
+        assert program.stdout is not None
+        assert program.stdout.readline().startswith("http://127.0.0.1:")
+        program.send_signal(signal.SIGINT)
+        told = program.communicate(timeout=60)[1]
+    assert program.returncode == 0
+    assert "Traceback" not in told
+
+
+def test_mistakes_on_the_command_line_are_one_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A port that is taken, a host that there is not, a track that is none, another source."""
+    track = write_job(tmp_path)
+    (tmp_path / "none.mtrk").write_text("nothing")
+    samples.write_still(tmp_path / "other.png", samples.picture(96, 64, 1))
+    with closing(listening("127.0.0.1", 0)) as taken:
+        port = taken.getsockname()[1]
+        mistakes = [
+            (["edit", str(track), "--port", str(port)], 2, "leave it out for a free one"),
+            (["edit", str(track), "--host", "no.such.host.invalid"], 2, "--host"),
+            (["edit", str(tmp_path / "none.mtrk")], 3, "no mesh track"),
+            (["edit", str(tmp_path / "other.png"), "-o", str(track)], 3, "not the source"),
+            (["edit", str(tmp_path / "absent.mp4")], 3, "absent.mp4"),
+        ]
+        for words, code, told in mistakes:
+            assert main([*words, "--no-open"]) == code
+            said = capsys.readouterr().err
+            assert told in said, said
+            assert said.count("\n") == 1, said

@@ -24,6 +24,7 @@ from pipeline.timeline.signals import Signals
 from pipeline.timeline.timeline import TEMPLATES, shipped_timelines
 from pipeline.timeline.times import parse_when
 from stages.hearing.heard import Heard
+from stages.media import probe
 from tests import media_samples as samples
 from warp_kernels.errors import OptionError
 from warp_kernels.styles.color import parse_color
@@ -157,7 +158,13 @@ EXPRESSIONS: Mapping[str, tuple[int, float]] = {
     "smooth(0.5) + abs(-1) + 2**3": (0, 9.5),
     "progress": (240, 0.5),
     "not (t < 1 and f < 3)": (2, 0.0),
+    "2*px": (0, 2.0),
 }
+
+
+def test_a_pixel_grows_with_the_shorter_side_of_the_film(tmp_path: Path) -> None:
+    clip = samples.write_video(tmp_path / "clip.mp4", [samples.picture(36, 64)] * 2)
+    assert Clock.of(probe(clip), None).pixel == pytest.approx(36 / 720)
 
 
 @pytest.mark.parametrize("text", EXPRESSIONS)
@@ -337,7 +344,7 @@ def test_a_switch_that_is_none_is_told() -> None:
 
 
 def test_beats_of_a_name_that_no_file_can_have_are_told() -> None:
-    with pytest.raises(OptionError, match=r"^show\.toml:1:10: .*write the name of a file"):
+    with pytest.raises(OptionError, match=r"^show\.toml:1:10: .*; check the name"):
         parse_timeline(f'beats = "{"a" * 5000}"', "show.toml", Look())
 
 

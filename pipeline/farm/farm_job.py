@@ -19,6 +19,8 @@ class FarmJob:
     """The parts, in order."""
     options: tuple[str, ...] = ()
     """Options of `trimotion solve`, as words, but for the range."""
+    blend: int = 0
+    """Frames over which parts that overlap fade into each other."""
     replaces: bool = False
     """Whether a joined track that exists is replaced."""
     threads: int = 0
@@ -50,4 +52,6 @@ class FarmJob:
         Args:
             tracks: Their tracks, or what stands for all of them.
         """
-        return ["join", *tracks, "-o", str(self.track), *(["--overwrite"] if self.replaces else [])]
+        fade = ["--blend", str(self.blend)] if self.blend else []
+        replace = ["--overwrite"] if self.replaces else []
+        return ["join", *tracks, "-o", str(self.track), *fade, *replace]

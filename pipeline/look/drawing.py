@@ -4,14 +4,13 @@ from contextlib import ExitStack
 from dataclasses import replace
 from types import TracebackType
 
-import numpy as np
-
 from pipeline.envelope import Solved
 from pipeline.look.region_masks import own_mask
 from pipeline.look.smooth import Smoother
 from pipeline.look.stage import Looks, Posed, check_stage, open_stage
 from pipeline.options.job import Job
 from stages.look.fading import Fading
+from stages.look.folded import Folded
 from stages.look.framing import Framing
 from stages.look.paint import paint_of
 from stages.look.strokes import Strokes
@@ -49,7 +48,7 @@ class Drawing:
         self._picture = picture
         self._masks = {name: Mask(name, picture) for name in self._unfollowed}
         self._seam = options.seam
-        self._leading: dict[int, np.ndarray] = {}  # what is blended into frames to come
+        self._leading: dict[int, Folded] = {}  # what is blended into frames to come
         self._encoder = open_encoder(
             output.path,
             _shown(info, self._framing),
@@ -101,11 +100,11 @@ class Drawing:
             )
             pixels = self._stage.draw(looks, view)
             if solved.blended_into is not None:
-                self._leading[index] = pixels
+                self._leading[index] = Folded.of(pixels)
                 return
             leading, partner = self._leading.pop(index, None), self._seam.partner_of(index)
             if leading is not None and partner is not None:
-                pixels = faded(pixels, leading, partner[1])
+                pixels = faded(pixels, leading.pixels(), partner[1])
             if self._watch is not None:
                 self._watch.add(pixels, shown - self._start_time)
             self._encoder.write(pixels, snapshot.pts, snapshot.time_base, snapshot.frame_index)

@@ -26,6 +26,7 @@ from stages.motion.morph import morphed
 from stages.snapshot import Snapshot
 from warp_kernels.color_model import ColorModel
 from warp_kernels.device.device import Device
+from warp_kernels.errors import TrackError
 
 
 def render(job: Job, track: TrackReader, info: MediaInfo, progress: Progress) -> Animated:
@@ -129,8 +130,10 @@ def _over_seam(
         if partner is None:
             return snapshot
         other, share = partner
-    of_other = next(found for found in track.rows if found.frame == other)
-    if of_other.shot != row.shot:
+    of_other = next((found for found in track.rows if found.frame == other), None)
+    if of_other is None:
+        raise TrackError(f"{track.path}: frame {other} is missing, into which {row.frame} fades")
+    if of_other.shot != row.shot and not seam.joints:
         return snapshot  # numbers of different shots mean different vertices
     return morphed(snapshot, track.snapshot(other).mesh, share * share * (3.0 - 2.0 * share))
 

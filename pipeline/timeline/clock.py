@@ -11,6 +11,8 @@ from stages.hearing.heard import Heard
 from stages.media import MediaInfo
 from warp_kernels.errors import OptionError
 
+USUAL_SIDE = 720
+"""Shorter side of a film whose pixels are `px` [px]."""
 USUAL_RATE = Fraction(25)
 """Frames a second of what carries no times."""
 _NEAR = Fraction(1, 4)
@@ -37,6 +39,8 @@ class Clock:
     """Frames of the film, None if unknown."""
     heard: Heard | None
     """Its beats and bars, in its own time; None where there are none."""
+    pixel: float = 1.0
+    """What a pixel of a film of 720 rows is in this one, by its shorter side [px]."""
 
     @classmethod
     def of(cls, info: MediaInfo, heard: Heard | None) -> "Clock":
@@ -46,7 +50,13 @@ class Clock:
             info: The source.
             heard: Its beats and bars.
         """
-        return cls(info.average_rate or USUAL_RATE, info.first_frame, info.frame_count, heard)
+        return cls(
+            info.average_rate or USUAL_RATE,
+            info.first_frame,
+            info.frame_count,
+            heard,
+            min(info.width, info.height) / USUAL_SIDE,
+        )
 
     @property
     def end(self) -> float | None:

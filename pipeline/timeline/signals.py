@@ -14,7 +14,7 @@ STRENGTHS = {"rms": "loudness", "low": "low", "mid": "mid", "high": "high"}
 """Strengths of the sound by variable, and their names among what is heard."""
 EVENTS = {"beat": "beats", "downbeat": "downbeats", "onset": "onsets"}
 """Moments by variable, and their names among what is heard."""
-NUMBERS = ("t", "f", "b", "bar", "bpm", "shot", "progress")
+NUMBERS = ("t", "f", "b", "bar", "bpm", "shot", "progress", "px")
 """Variables that are no strengths and no moments."""
 VARIABLES = (*NUMBERS, *STRENGTHS, *EVENTS)
 """All variables."""
@@ -75,6 +75,8 @@ class Signals:
         if name == "progress":
             begin, end = self.span
             return np.clip((self.times - begin) / max(end - begin, 1e-9), 0.0, 1.0)
+        if name == "px":
+            return np.full_like(self.times, self.clock.pixel)
         if name == "bpm":
             beats = self.clock.beats
             around = [np.asarray(beats.time_of_beat(self.value("b") + d)) for d in (-0.5, 0.5)]

@@ -2,14 +2,15 @@
 
 import sqlite3
 from collections.abc import Sequence
-from contextlib import ExitStack, closing
-from dataclasses import replace
+from contextlib import closing
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from pathlib import Path
 
 from pipeline.track.agreement import differing_flags
 from pipeline.track.header import Header, write_header
-from pipeline.track.reader import TrackReader
+from pipeline.track.joints import Joint, finished_joints
+from pipeline.track.reader import FrameRow, TrackReader
 from pipeline.track.schema import (
     LATER,
     TABLES,
@@ -24,13 +25,35 @@ from stages.media.writing.commit import PendingFile
 from warp_kernels.errors import OptionError, TrackError
 
 
-def join(parts: Sequence[Path], output: Path, frame_range: FrameRange | None = None) -> Header:
+@dataclass(frozen=True)
+class _Piece:
+    """A track that is joined."""
+
+    path: Path
+    header: Header
+    rows: tuple[FrameRow, ...]
+
+    @property
+    def first(self) -> int:
+        """Its first frame."""
+        return self.rows[0].frame
+
+    @property
+    def last(self) -> int:
+        """Its last frame."""
+        return self.rows[-1].frame
+
+
+def join(
+    parts: Sequence[Path], output: Path, frame_range: FrameRange | None = None, blend: int = 0
+) -> Header:
     """Put tracks together; the rows are those of the parts, to the bit.
 
     Args:
         parts: The tracks, in any order.
         output: The joined track; it appears when it is complete.
         frame_range: The range that the parts are all of; None to conclude it from them.
+        blend: Last frames over which parts that overlap fade into each other; 0 if none may.
 
     Returns:
         Its header.
@@ -40,30 +63,35 @@ def join(parts: Sequence[Path], output: Path, frame_range: FrameRange | None = N
         TrackError: If a part cannot be read, is unfinished or was made in another way.
         OutputError: If the joined track cannot be written.
     """
-    with ExitStack() as stack:
-        readers = [stack.enter_context(TrackReader(path)) for path in parts]
-        for reader in readers:
-            _check_finished(reader)
-            reader.check()
-        readers.sort(key=lambda reader: reader.rows[0].frame)
-        for reader in readers[1:]:
-            _check_alike(readers[0], reader)
-        step = readers[0].header.frame_range.step
-        for before, after in pairwise(readers):
-            _check_follows(before, after, step)
-        header = readers[0].header.with_range(frame_range or _whole_range(readers))
-        ordered = [reader.path for reader in readers]
+    found = sorted(map(_checked, parts), key=lambda part: part.first)
+    for part in found[1:]:
+        _check_alike(found[0], part)
+    joints = [_joint(before, after, blend) for before, after in pairwise(found)]
+    header = found[0].header.with_range(frame_range or _whole_range(found))
+    begins = [
+        found[0].first,
+        *(part.first if j is None else j.first for part, j in zip(found[1:], joints, strict=True)),
+    ]
     pending = PendingFile(output)
     try:
         with writing(output), closing(create(pending.path)) as connection:
-            for path in ordered:
-                _copy(connection, path)
+            for part, begin, following in zip(found, begins, [*begins[1:], None], strict=True):
+                _copy(connection, part, begin, following)
             write_header(connection, replace(header, finished=True))
+        header = finished_joints(pending.path, header, [j for j in joints if j is not None])
     except BaseException:
         pending.discard()
         raise
     put_in_place(pending)
     return header
+
+
+def _checked(path: Path) -> _Piece:
+    """A part that is whole; it is closed again, for there may be more than files can be open."""
+    with TrackReader(path) as reader:
+        _check_finished(reader)
+        reader.check()
+        return _Piece(path, reader.header, reader.rows)
 
 
 def _check_finished(reader: TrackReader) -> None:
@@ -76,7 +104,7 @@ def _check_finished(reader: TrackReader) -> None:
         )
 
 
-def _check_alike(first: TrackReader, other: TrackReader) -> None:
+def _check_alike(first: _Piece, other: _Piece) -> None:
     mine, theirs = first.header, other.header
     if (mine.source.size, mine.source.digest) != (theirs.source.size, theirs.source.digest):
         raise TrackError(
@@ -94,38 +122,79 @@ def _check_alike(first: TrackReader, other: TrackReader) -> None:
         )
 
 
-def _check_follows(before: TrackReader, after: TrackReader, step: int) -> None:
-    last, first = before.rows[-1].frame, after.rows[0].frame
-    if first <= last:
-        raise OptionError(
-            f"{after.path}: begins with frame {first}, and {before.path} holds frames up to "
-            f"{last}; join tracks that do not overlap"
-        )
-    if first != last + step:
+def _joint(before: _Piece, after: _Piece, blend: int) -> Joint | None:
+    """How a part goes on where another one ends; None if it begins with the frame after that."""
+    last, first, step = before.last, after.first, before.header.frame_range.step
+    common = (last - first) // step + 1
+    if first == last + step:
+        return None
+    if first > last:
         raise OptionError(
             f"{after.path}: begins with frame {first}, and {before.path} ends with {last}; "
             f"frames {last + step} to {first - step} are missing: solve them as well"
         )
+    if not blend:
+        raise OptionError(
+            f"{after.path}: begins with frame {first}, and {before.path} holds frames up to "
+            f"{last}; join tracks that do not overlap, or let them fade with --blend N"
+        )
+    if step != 1:
+        raise OptionError(f"--blend {blend}: takes every frame; solve without x{step}")
+    if common < blend:
+        raise OptionError(
+            f"--blend {blend}: {before.path} and {after.path} have {common} frames in common; "
+            f"choose --blend {common} or fewer"
+        )
+    if after.last - last < blend:
+        raise OptionError(
+            f"{after.path}: ends {max(0, after.last - last)} frames after {before.path}, and they "
+            f"fade over {blend}; choose a smaller --blend, or leave it out"
+        )
+    return Joint(last - blend + 1, before.path, blend)
 
 
-def _whole_range(readers: Sequence[TrackReader]) -> FrameRange:
+def _whole_range(parts: Sequence[_Piece]) -> FrameRange:
     """From the first part's beginning to the last one's end."""
-    first, last = (readers[place].header.frame_range for place in (0, -1))
+    first, last = (parts[place].header.frame_range for place in (0, -1))
     joined = replace(first, last=last.last, end_time=last.end_time)
-    count = readers[0].header.info.frame_count
+    count = parts[0].header.info.frame_count
     is_whole = joined.last is not None and joined == FrameRange(last=joined.last)
-    return FrameRange() if is_whole and readers[-1].rows[-1].frame + 1 == count else joined
+    return FrameRange() if is_whole and parts[-1].last + 1 == count else joined
 
 
-def _copy(connection: sqlite3.Connection, path: Path) -> None:
-    """Copy all frames of a part."""
-    connection.execute("ATTACH ? AS part", (f"{path.absolute().as_uri()}?mode=ro",))
+def _copy(connection: sqlite3.Connection, part: _Piece, begin: int, end: int | None) -> None:
+    """Copy the frames of a part from one on, up to another one that is not copied."""
+    connection.execute("ATTACH ? AS part", (f"{part.path.absolute().as_uri()}?mode=ro",))
     connection.execute("BEGIN")
     for table in TABLES:
         if not has_table(connection, table, "part"):
             continue
         if table in LATER:
             need_table(connection, table)
-        connection.execute(f"INSERT INTO {table} SELECT * FROM part.{table} ORDER BY frame")
+        connection.execute(
+            f"INSERT INTO {table} SELECT * FROM part.{table} WHERE frame >= ? AND "
+            "(? IS NULL OR frame < ?) ORDER BY frame",
+            (begin, end, end),
+        )
+    if begin > part.first:
+        _begin_with(connection, begin)
     connection.execute("COMMIT")
     connection.execute("DETACH part")
+
+
+def _begin_with(connection: sqlite3.Connection, begin: int) -> None:
+    """Let a frame begin what came before it in its part: a shot, and a topology."""
+    (holder,) = connection.execute(
+        "SELECT topology FROM part.frames WHERE frame = ?", (begin,)
+    ).fetchone()
+    if holder < begin:
+        connection.execute(
+            "INSERT INTO topologies SELECT ?, triangles, vertex_ids, triangle_ids "
+            "FROM part.topologies WHERE frame = ?",
+            (begin, holder),
+        )
+    for column in ("shot", "topology"):
+        connection.execute(
+            f"UPDATE frames SET {column} = ? WHERE frame >= ? AND {column} < ?",
+            (begin, begin, begin),
+        )

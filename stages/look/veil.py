@@ -13,7 +13,7 @@ from warp_kernels.scene.places import hashes_of
 from warp_kernels.styles import STYLES, Style
 from warp_kernels.styles.veil import Veil
 
-WAITING = {"scatter": 0.12, "grow": 0.6}
+WAITING = {"scatter": 0.12, "grow": 0.35}
 """How long a triangle takes on its way, as a part of the whole; the rest of the time it waits for
 its turn."""
 

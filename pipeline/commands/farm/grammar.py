@@ -26,6 +26,18 @@ def add_plan_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--parts", metavar="N", type=whole_number, help="at most so many (default: one a shot)"
     )
+    parser.add_argument(
+        "--max-frames",
+        metavar="N",
+        type=whole_number,
+        help="cut longer shots, too: parts of at most so many frames, which join --blend N joins",
+    )
+    parser.add_argument(
+        "--lead",
+        metavar="N",
+        type=whole_number,
+        help="frames before such a part on which it warms up (default: 12)",
+    )
     form = parser.add_mutually_exclusive_group()
     form.add_argument(
         "--format",
@@ -60,6 +72,13 @@ def add_join_options(parser: argparse.ArgumentParser) -> None:
         type=text_value,
         required=True,
         help="the joined track",
+    )
+    parser.add_argument(
+        "--blend",
+        metavar="N",
+        type=whole_number,
+        default=0,
+        help="let parts that overlap fade into each other over the last N frames (default: 0)",
     )
     parser.add_argument("--overwrite", action="store_true", help="replace an existing track")
     parser.add_argument("-q", "--quiet", action="store_true", help="tell errors only")

@@ -11,13 +11,14 @@ from stages.media.writing.place import check_folder
 from warp_kernels.errors import OptionError, OutputError
 
 
-def join_tracks(parts: Sequence[Path], output: Path, *, overwrite: bool) -> str:
+def join_tracks(parts: Sequence[Path], output: Path, *, overwrite: bool, blend: int = 0) -> str:
     """Put tracks together.
 
     Args:
         parts: The tracks, in any order.
         output: The joined track.
         overwrite: Whether to replace an existing one.
+        blend: Last frames over which parts that overlap fade into each other.
 
     Returns:
         What was done, in one line.
@@ -28,15 +29,18 @@ def join_tracks(parts: Sequence[Path], output: Path, *, overwrite: bool) -> str:
         TrackError: If a part cannot be joined.
     """
     check_track_name(output)
+    if blend < 0:
+        raise OptionError(f"--blend {blend}: must be 0 or more")
     if output.resolve() in {part.resolve() for part in parts}:
         raise OptionError(f"{output}: is one of the tracks that are joined; choose another name")
     with alone(output):
         if output.exists() and not overwrite:
             raise OutputError(output, "exists already", "choose another name or --overwrite")
         check_folder(output)
-        join(parts, output)
+        header = join(parts, output, blend=blend)
+    seam = header.solve.seam
     with TrackReader(output) as track:
-        rows = track.rows
+        rows = [row for row in track.rows if not seam.joints or row.frame <= seam.closes]
     joined = "1 track" if len(parts) == 1 else f"{len(parts)} tracks"
     which = f"frames {rows[0].frame} to {rows[-1].frame}, {len(rows)} in all"
     return f"{joined} joined, {which}: {shown_name(output)}"

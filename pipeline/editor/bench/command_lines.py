@@ -21,8 +21,8 @@ def solve_line(track: Path, options: SolveOptions) -> str:
         options: How it was solved.
     """
     again = track.with_name(f"{track.stem}.edited{track.suffix}")
-    words = ["trimotion", "solve", str(options.source), *solve_flags(options)]
-    return shlex.join([*words, "--edits", str(track), "-o", str(again)])
+    words = ["trimotion", "solve", _named(options.source), *solve_flags(options)]
+    return shlex.join([*words, "--edits", _named(track), "-o", _named(again)])
 
 
 def render_line(track: Path, output: Path, styles: Sequence[str]) -> str:
@@ -34,7 +34,7 @@ def render_line(track: Path, output: Path, styles: Sequence[str]) -> str:
         styles: The look, bottom to top, as on the command line.
     """
     looks = [word for style in styles for word in ("--style", style)]
-    return shlex.join(["trimotion", "render", str(track), "-o", str(output), *looks])
+    return shlex.join(["trimotion", "render", _named(track), "-o", _named(output), *looks])
 
 
 def solve_flags(options: SolveOptions) -> list[str]:
@@ -55,6 +55,12 @@ def solve_flags(options: SolveOptions) -> list[str]:
     for name, time in (("--start", wanted.start_time), ("--end", wanted.end_time)):
         flags += [] if time is None else [name, f"{float(time):.9g}"]
     return flags
+
+
+def _named(path: Path) -> str:
+    """A file as one would type its name here."""
+    whole, here = path.absolute(), Path.cwd()
+    return str(whole.relative_to(here)) if whole.is_relative_to(here) else str(path)
 
 
 def _flags(

@@ -89,11 +89,9 @@ function main() {
     },
     lost: () => {
       isLost = true;
-      const edits = stage.state.number;
       element("lost").hidden = false;
-      element("lost").children[1].textContent = edits
-        ? `What you see is the job after edit ${edits}; all up to it is saved. Looking for the program again…`
-        : "Looking for the program again…";
+      const seen = stage.state.edits ? `What you see is the job with its ${stage.state.edits} edits; all of them are saved. ` : "";
+      element("lost").children[1].textContent = `${seen}Looking for the program… If it has ended, start it again: trimotion edit ${stage.track}`;
     },
     found: () => begin(isLost),
   });
@@ -110,7 +108,7 @@ function main() {
     document.title = `${facts.name} · trimotion`;
     element("name").textContent = facts.name;
     stage.frame = isAgain ? stage.frame : facts.frames[0];
-    Object.assign(stage, { frames: facts.frames, shots: facts.shots, rate: facts.rate, stem: facts.stem });
+    Object.assign(stage, { frames: facts.frames, shots: facts.shots, rate: facts.rate, stem: facts.stem, track: facts.track });
     style.fill(facts.styles, facts.model === "constant" ? "flat" : "gradient");
     if (isAgain) await style.send();
     element("time").hidden = facts.frames.length < 2;

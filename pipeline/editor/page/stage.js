@@ -53,6 +53,7 @@ export class Stage {
     /** @type {number | null} */
     this.rate = null;
     this.stem = "frame";
+    this.track = "";
     this.paintStyle = "hatching";
     /** @type {View} */
     this.view = "edited";
@@ -141,8 +142,8 @@ export class Stage {
   /** @param {State} state */
   setState(state) {
     this.state = state;
-    this.ghost = null;
     this.changed();
+    this.hover();
   }
 
   /** @param {import("./net/packed.js").Packed} packed */
@@ -297,6 +298,7 @@ export class Stage {
       this.ghost = null; // where nothing can be put nothing is shown
     } finally {
       this.isGhostAsked = false;
+      if (this.pointer !== at || this.shift !== removes) this.hover(); // it has moved on meanwhile
     }
   }
 

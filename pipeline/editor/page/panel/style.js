@@ -182,9 +182,10 @@ export class StylePanel {
     Object.assign(input, { id: `set-${name}`, type: "text", value });
     input.addEventListener("change", () => changed(input.value));
     row.append(label, input);
-    if (/^#[0-9a-f]{6}$/i.test(value)) {
+    if (/^#([0-9a-f]{3}){1,2}$/i.test(value)) {
       const color = document.createElement("input");
-      Object.assign(color, { type: "color", value });
+      const six = value.length === 4 ? value.replace(/[^#]/g, "$&$&") : value;
+      Object.assign(color, { type: "color", value: six });
       color.setAttribute("aria-label", `${told.name}, as a colour`);
       color.addEventListener("input", () => {
         input.value = color.value;
