@@ -5,9 +5,15 @@ import numpy as np
 from stages.mesh import Mesh
 from stages.optimize_options import OptimizeOptions
 from warp_kernels.energy.workspace import DISPLACEMENT, Workspace
+from warp_kernels.moments.due import BESIDE, MOVED
 
 
-def load_mesh(workspace: Workspace, mesh: Mesh, springs: np.ndarray | None = None) -> None:
+def load_mesh(
+    workspace: Workspace,
+    mesh: Mesh,
+    springs: np.ndarray | None = None,
+    free: np.ndarray | None = None,
+) -> None:
     """Put a mesh into device memory, where `optimize` starts from it.
 
     Args:
@@ -15,9 +21,19 @@ def load_mesh(workspace: Workspace, mesh: Mesh, springs: np.ndarray | None = Non
         mesh: The mesh.
         springs: Where the temporal term holds each vertex [px] and how strongly
             [code value^2], [V, 3]; None for not at all.
+        free: Vertices that move; the others rest, and cost nothing, [V] bool. None for all.
     """
     place_mesh(workspace, mesh)
-    workspace.hold(np.zeros((mesh.vertex_count, 3)) if springs is None else springs)
+    anchors = np.zeros((mesh.vertex_count, 3)) if springs is None else springs
+    workspace.hold(anchors, None if free is None else _marks(mesh, free))
+
+
+def _marks(mesh: Mesh, free: np.ndarray) -> np.ndarray:
+    """What `Freedom.rest` asks for, shape [V] int32."""
+    marks = np.zeros(mesh.vertex_count, dtype=np.int32)
+    marks[mesh.triangles[free[mesh.triangles].any(axis=1)]] = BESIDE
+    marks[free] = MOVED
+    return marks
 
 
 def place_mesh(workspace: Workspace, mesh: Mesh) -> None:

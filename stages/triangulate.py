@@ -10,15 +10,14 @@ from stages.layouts import Layout
 from stages.mesh import Mesh
 from stages.motion.advect import Carried
 from stages.motion.boiling import Unrest
-from stages.motion.springs import springs_of
-from stages.optimize import load_mesh, optimize
 from stages.snapshot import Snapshot
 from stages.solve.approximate import Approximator
 from stages.solve.bench import Bench
 from stages.solve.fitting import Fitting
+from stages.solve.following import Following
 from stages.solve.hold import Hold
-from stages.solve.pace import BOILING, CALM
 from stages.solve.quality import FALL, Trial, smallest_that_reaches
+from stages.solve.rhythm import BOILING, CALM
 from stages.spaces import SPACES
 from stages.topology import TOPOLOGIES
 from stages.topology.appraise import Appraiser
@@ -30,14 +29,9 @@ from warp_kernels.device.device import Device
 from warp_kernels.energy.solver_kernels import limiting_kernels, solving_kernels
 from warp_kernels.energy.workspace import Workspace
 
-SPRING = 39.0
+SPRING = 30.0
 """Strength of the temporal term where the motion is certain, as a multiple of the mean squared
 error of the mesh: what pulls at vertices without cause grows with what triangles cannot show."""
-FRAME_DISPLACEMENT = 0.75
-"""Distance of the variants in later frames [px]: a wider one finds steadier places, and a narrower
-one those that fit the picture better."""
-DEAD_BAND = 0.1
-"""Steps of later frames below this are not taken [px]: noise must not move what stands still."""
 RENEWED = 0.8
 """Where a later frame boils it is refined anew over this share of its rounds."""
 CALM_QUALITY = 0.02
@@ -81,9 +75,9 @@ class Triangulator:
         self._even = self._bench(weighted=False)
         self._weighted: Bench | None = None
         self._locks = NO_LOCKS
-        self._use(self._even)
+        self._in_use = self._even
         self._solved: Snapshot | None = None  # with energies by the colours that are optimised
-        of_error = self._workspace if options.space == "rgb" else None
+        of_error = self._even.workspace if options.space == "rgb" else None
         self._own = Fitting(of_error or Workspace(device, size, options.model))
         """Colours of the optimised model: what decides on meshes must not hang on what is drawn."""
         is_own = fitted is options.model
@@ -104,11 +98,6 @@ class Triangulator:
             hold=self._hold,
         )
         return Bench(workspace, appraiser, approximator)
-
-    def _use(self, bench: Bench) -> None:
-        """Work on this bench from now on."""
-        self._workspace, self._appraiser = bench.workspace, bench.appraiser
-        self._approximator = bench.approximator
 
     def _lock(self, locks: Locks) -> None:
         """Hold fast from now on what a person holds, and nothing else."""
@@ -149,7 +138,7 @@ class Triangulator:
         if refine.quality is None:
             mesh = attempt(refine.triangles).mesh
             goal = self._goal(mesh.triangle_count)
-            return self._solution(frame, self._approximator.mended(mesh, torn, goal))
+            return self._solution(frame, self._in_use.approximator.mended(mesh, torn, goal))
         pixels = frame.width * frame.height
         mesh = smallest_that_reaches(refine.quality, attempt, least=self._least, pixels=pixels)
         return self._solution(frame, mesh)
@@ -165,7 +154,7 @@ class Triangulator:
                 self._weighted.appraiser.hold(self._locks)
             bench = self._weighted
             bench.load(pixels, frame.weights)
-        self._use(bench)
+        self._in_use = bench
         self._load_for_colors(frame)
 
     def _load_for_colors(self, frame: Frame) -> None:
@@ -192,63 +181,55 @@ class Triangulator:
         """
         self._lock(seed.locks)
         self._load(frame)
-        spring = SPRING * self._rmse(seed.mesh) ** 2
+        error = self._rmse(seed.mesh) ** 2
         unrest = Unrest.everywhere(seed.mesh) if renewed else self._unrest(seed, earlier)
         unrest = None if self._hold.share else unrest
-        pace = CALM if unrest is None else BOILING
-        rounds, each = pace.spread(0 if self._hold.is_full else self._options.frame_iterations)
-        convergence = pace.watch()
         if unrest is not None:
             seed = unrest.freed(seed)
-        mesh = self._follow(seed.mesh, seed, spring, each, frame.weights)
+        rhythm = CALM if unrest is None else BOILING
+        rounds, each = rhythm.spread(0 if self._hold.is_full else self._options.frame_iterations)
+        following = Following(
+            bench=self._in_use,
+            options=self._options.optimize,
+            seed=seed,
+            energies=self._in_use.appraiser.energies(seed.mesh),
+            spring=SPRING * error,
+            hold=self._hold.strength(error),
+            weights=frame.weights,
+            iterations=each,
+        )
+        mesh = following.moved(seed.mesh)
         if unrest is not None:
             renewing = int(RENEWED * rounds)
-            mesh = self._renew(mesh, seed, unrest, frame.weights, spring, renewing, each)
+            mesh = self._renew(mesh, following, unrest, renewing)
             rounds -= renewing
         count = self._followed_count(mesh)
         if self._hold.is_full and earlier is not None:
             count = earlier.mesh.triangle_count  # a layout has about as many as were asked for
         goal = self._goal(count, calm=True, unrest=unrest)
-        for _ in range(rounds):
-            if each and convergence.is_reached(self._workspace.last_energy()):
-                break
-            mesh = self._approximator.topology.adapt(mesh, self._appraiser, goal)
-            mesh = self._follow(mesh, seed, spring, each, frame.weights)
-        return self._solution(frame, self._approximator.within_limits(mesh, goal), earlier)
+        mesh = following.settled(mesh, goal, rounds, rhythm.watch())
+        return self._solution(frame, self._in_use.approximator.within_limits(mesh, goal), earlier)
 
-    def _renew(
-        self,
-        mesh: Mesh,
-        seed: Carried,
-        unrest: Unrest,
-        weights: np.ndarray | None,
-        spring: float,
-        rounds: int,
-        each: int,
-    ) -> Mesh:
+    def _renew(self, mesh: Mesh, following: Following, unrest: Unrest, rounds: int) -> Mesh:
         """Refine a mesh anew where it boils, and adapt it elsewhere as always.
 
         Args:
             mesh: What has become of the seed.
-            seed: Where the motion took the vertices.
+            following: Moves its vertices.
             unrest: Where it boils.
-            weights: As in `_follow`.
-            spring: As in `_follow` [code value^2].
             rounds: Looks at the topology.
-            each: Iterations after each of them.
         """
         refine = self._options.refine
         count = mesh.triangle_count
         if refine.quality is None:
             count = refine.triangles + self._locks.extra(mesh)
         boiling = int(unrest.boiling(mesh).sum())
-        renewal = self._approximator.topology.renewal
+        renewal = self._in_use.approximator.topology.renewal
         for number in range(1, rounds + 1):
             unrest = unrest.passed_on(mesh)
             more = renewal.count(number / rounds, boiling) - boiling
             goal = self._goal(count + more, calm=True, unrest=unrest)
-            mesh = self._approximator.topology.adapt(mesh, self._appraiser, goal)
-            mesh = self._follow(mesh, seed, spring, each, weights)
+            mesh = following.moved(following.adapted(mesh, goal))
         return mesh
 
     def fit(self, frame: Frame, mesh: Mesh) -> Snapshot:
@@ -295,41 +276,13 @@ class Triangulator:
         drift = min(max(missed ** (1 / FALL), 1 - MOST_DRIFT), 1 + MOST_DRIFT)
         return max(self._least, round(mesh.triangle_count * drift))
 
-    def _follow(
-        self,
-        mesh: Mesh,
-        seed: Carried,
-        spring: float,
-        iterations: int,
-        weights: np.ndarray | None,
-    ) -> Mesh:
-        """Optimise, with every vertex on a spring to where the motion took it.
-
-        Args:
-            mesh: What has become of the seed.
-            seed: Where the motion took the vertices.
-            spring: Strength of the spring where the motion is certain [code value^2].
-            iterations: Number of steps.
-            weights: The picture's, [H, W] uint8, or None.
-        """
-        hold = self._hold.strength(spring / SPRING)
-        load_mesh(self._workspace, mesh, springs_of(mesh, seed, spring, weights, hold))
-        return optimize(
-            self._workspace,
-            mesh,
-            iterations,
-            self._options.optimize,
-            dead_band=DEAD_BAND,
-            displacement=FRAME_DISPLACEMENT,
-        )
-
     def _trial(self, frame: Frame, layout: Layout, rng: np.random.Generator, goal: Goal) -> Trial:
         """Approximate the picture in the workspace from scratch."""
-        count = self._approximator.growth(goal).count(0.0, goal.count)
-        if self._approximator.keeps_layout:
+        count = self._in_use.approximator.growth(goal).count(0.0, goal.count)
+        if self._in_use.approximator.keeps_layout:
             count = goal.count
         mesh = layout.build(frame.pixels, max(2, count), rng)
-        mesh = self._approximator.approximate(mesh, goal)
+        mesh = self._in_use.approximator.approximate(mesh, goal)
         is_rgb = self._own.workspace is self._even.workspace
         if self._options.refine.quality is None or not is_rgb:
             return Trial(mesh, self._rmse(mesh))

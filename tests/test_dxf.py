@@ -133,7 +133,9 @@ def test_circles_and_strokes_of_pens(track: Path) -> None:
 
 def test_the_same_input_gives_the_same_bits(track: Path) -> None:
     target = track.parent / "out.dxf"
+    kept = ezdxf.options.write_fixed_meta_data_for_testing
     written(track, styles=["flat", "edges"])
+    assert ezdxf.options.write_fixed_meta_data_for_testing == kept
     first = target.read_bytes()
     written(track, styles=["flat", "edges"])
     assert target.read_bytes() == first

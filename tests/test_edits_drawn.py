@@ -39,6 +39,12 @@ def test_a_polygon_is_painted_where_its_inside_is(seed: int) -> None:
     assert np.array_equal(found, wanted)
 
 
+def test_a_polygon_may_be_as_large_as_numbers_are() -> None:
+    far = 1e308
+    everything = Area(polygon=((-far, -far), (far, -far), (far, far), (-far, far)))
+    assert painted([everything], SIZE).all()
+
+
 def test_strokes_are_discs_and_add_up() -> None:
     both = painted([Area((20.0, 20.0), 9.0), Area((60.0, 30.0), 5.0)], SIZE) > 0
     assert both.sum() == pytest.approx(np.pi * (81 + 25), rel=0.03)
@@ -61,6 +67,8 @@ def test_strokes_of_one_style_are_one_region() -> None:
     [
         (StyleRegion(frame=2, polygon=LEFT, style="hatchin"), "no 'hatchin'; .*hatching"),
         (StyleRegion(frame=2, polygon=LEFT, style="edges:width=x"), "width"),
+        (StyleRegion(frame=2, polygon=LEFT, style="a\nb"), "names nothing"),
+        (StyleRegion(frame=2, polygon=LEFT, style="x" * 10**5), "names nothing"),
         (TextureRegion(frame=2, polygon=LEFT, file="none.png"), "none.png.*or choose from cushion"),
         (TextureRegion(frame=2, polygon=LEFT, file="cushion", strength=9.0), "strength=9"),
     ],

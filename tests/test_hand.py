@@ -154,6 +154,13 @@ def test_a_region_is_triangulated_anew_and_the_rest_stays() -> None:
     assert ((mesh.vertices[outside] > (20, 10)) & (mesh.vertices[outside] < (70, 50))).all()
 
 
+def test_a_brush_that_asks_for_too_much_ends() -> None:
+    """So many as fit, and not a try for each that does not."""
+    filled = Insert(0, (48, 32), 9, 10_000).apply(Worked(random_mesh(1, inner=4)))
+    assert 30 < len(filled.locks.vertices) < 1000
+    assert_valid(filled.mesh)
+
+
 def test_the_middle_of_a_normal_brush_gets_most() -> None:
     mesh = random_mesh(1, inner=4)
     spread = []
@@ -177,6 +184,8 @@ REFUSED: list[tuple[Edit, str]] = [
     (Remove(0, (2, 2), 1), "no vertex within"),
     (Retriangulate(0, ((1, 1), (2, 2))), "no inside"),
     (Retriangulate(0, ((9, 9), (12, 9), (9, 12))), "outside of the picture"),
+    (Retriangulate(0, ((0, 0), (1e300, 0), (0, 1e300))), "further than 1e\\+06 px"),
+    (SetFocus(frame=0, at=(2, 2)), "radius 0"),
     (Lock(0), "give either"),
     (Lock(0, at=(2, 2), what="faces"), "what 'faces'"),
     (Lock(0, polygon=((1, 1), (1.1, 1), (1, 1.1))), "holds no vertices"),

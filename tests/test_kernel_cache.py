@@ -1,11 +1,14 @@
 """Compiled kernels find a place, or one line tells that there is none."""
 
+import struct
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 from test_encode import ROOT
+
+from warp_kernels.device.whole_kernels import is_whole, remove_broken
 
 SCRIPT = """
 import sys, tempfile
@@ -72,3 +75,27 @@ def test_an_empty_name_is_none() -> None:
     note, place = settled("")
     assert note == ""
     assert not Path(place).is_relative_to(ROOT)
+
+
+def object_file(path: Path, size: int) -> Path:
+    """An object file whose table of sections, two of 64 bytes, begins at byte 100."""
+    header = bytearray(64)
+    header[:5] = b"\x7fELF\x02"
+    struct.pack_into("<Q", header, 40, 100)
+    struct.pack_into("<HH", header, 58, 64, 2)
+    path.parent.mkdir(exist_ok=True)
+    path.write_bytes((bytes(header) + b"x" * 200)[:size])
+    return path
+
+
+def test_kernels_that_were_cut_off_are_removed(tmp_path: Path) -> None:
+    """They are compiled again; whole ones, those of other systems and missing ones stay."""
+    folders = [tmp_path / name for name in ("whole", "cut", "short", "zeros", "mach", "missing")]
+    whole, cut, short, zeros, mach, _ = folders
+    for folder, size in ((whole, 228), (cut, 227), (short, 20)):
+        object_file(folder / "kernel.o", size)
+    object_file(zeros / "kernel.o", 0).write_bytes(bytes(300))
+    object_file(mach / "kernel.o", 0).write_bytes(b"\xcf\xfa\xed\xfe" * 30)
+    assert [is_whole(folder) for folder in folders] == [True, False, False, False, True, True]
+    remove_broken(folders, tmp_path, lambda: None)
+    assert {folder.name for folder in folders if folder.exists()} == {"whole", "mach"}

@@ -43,8 +43,9 @@ from tests.oracles.coverage import covered_pixels, rounded
 from tests.tracks import solve_to, write_clip
 from warp_kernels.color_model import COLOR_MODELS, CONSTANT, ColorModel
 from warp_kernels.device.device import Device
+from warp_kernels.energy.color_bands import Bands
 from warp_kernels.energy.color_extremes import Extremes
-from warp_kernels.energy.nearby_colors import LEEWAY
+from warp_kernels.energy.nearby_colors import LEEWAY, Nearby
 from warp_kernels.styles import STYLES, Style
 from warp_kernels.styles.flat import Flat
 from warp_kernels.styles.gradient import Gradient
@@ -211,6 +212,25 @@ def test_small_triangles_stay_within_what_is_around(color: str, device: str) -> 
     assert (beside == 0).mean() > 0.1  # what is said here is said of a good part of the picture
     assert away[beside == 0].max() <= SLACK + ROUNDING
     assert (away > 40).mean() < 1e-3  # and of all triangles nearly everywhere
+
+
+@pytest.mark.parametrize(("width", "height"), [(150, 90), (64, 33), (9, 70), (131, 6)])
+def test_bands_let_no_triangle_through(width: int, height: int, device: str) -> None:
+    """What they call harmless has no pixel that departs; of plain places nothing is suspected."""
+    blocks = np.kron(noise(-(-width // 11), -(-height // 7)), np.ones((7, 11, 1), np.uint8))
+    mesh = random_mesh(width, height, 60, seed=width)
+    for picture in (blocks[:height, :width].copy(), noise(width, height), waves(width, height)):
+        workspace = poisoned_workspace(Device(device), picture, mesh, CONSTANT)
+        coefficients, energies, _ = workspace.fit()
+        limits = np.broadcast_to(np.uint8([[0], [255]]), (mesh.triangle_count, 2, 3))
+        bands, nearby = Bands(workspace), Nearby(workspace)
+        for shift in (0.0, 60.0, -110.0):
+            colors = np.clip(coefficients + shift, 0.0, 255.0)
+            told = np.where(energies > 0, 1e300, 0.0)
+            departing = nearby.measure(colors, told, limits).counts > 0
+            suspects = bands.suspects(colors, told)
+            assert not (departing & ~suspects).any()
+            assert suspects.sum() <= departing.sum() + 0.3 * mesh.triangle_count
 
 
 @pytest.mark.parametrize("color", COLOR_MODELS)

@@ -196,7 +196,7 @@ def test_a_pen_a_layer_in_millimetres(track: Path) -> None:
     pens = [group for group in root.iter(f"{DOCUMENT}g") if group.get("stroke")]
     assert [pen.get(label) for pen in pens] == ["1 #102030"]
     assert not list(root.iter(f"{DOCUMENT}rect"))
-    with pytest.raises(OptionError, match="between 0"):
+    with pytest.raises(OptionError, match="between 1 and 10000"):
         written(track, "n.svg", styles=style, frames=0, mm=-1)
 
 

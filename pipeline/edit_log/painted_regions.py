@@ -1,5 +1,6 @@
 """What of a log is drawn: styles and textures of regions, over all that a look has."""
 
+import reprlib
 from collections.abc import Collection
 from dataclasses import dataclass, replace
 
@@ -14,6 +15,9 @@ from stages.masks.region import Region
 from warp_kernels.errors import MediaError, OptionError
 from warp_kernels.styles import STYLES, Style
 from warp_kernels.styles.texture import Texture
+
+LONGEST = 300
+"""Letters of a style or of a file's name."""
 
 
 @dataclass(frozen=True)
@@ -85,6 +89,9 @@ def _style_of(edit: StyleRegion | TextureRegion) -> Style:
         OptionError: If there is none such.
         MediaError: If a picture cannot be read.
     """
+    named = edit.style if isinstance(edit, StyleRegion) else edit.file
+    if not named.isprintable() or len(named) > LONGEST:
+        raise OptionError(f"{reprlib.repr(named)} names nothing; give what --style takes")
     style: Style
     if isinstance(edit, StyleRegion):
         style = parse_member("style", edit.style, STYLES)

@@ -91,9 +91,9 @@ class ExchangeOptions:
             raise OptionError(
                 f"--svg-precision {self.svg_precision}: must lie between 0 and {MAX_PRECISION}"
             )
-        if not 0.0 <= self.mm <= MAX_WIDTH:
+        if self.mm != 0.0 and not 1.0 <= self.mm <= MAX_WIDTH:
             raise OptionError(
-                f"--mm {self.mm:g}: must lie between 0 (a size in pixels) and {MAX_WIDTH}"
+                f"--mm {self.mm:g}: must lie between 1 and {MAX_WIDTH}, or be 0, a size in pixels"
             )
         if self.svg_gradients not in GRADIENTS:
             raise OptionError(

@@ -16,8 +16,8 @@ MOST = 10_000
 """Most vertices of one stroke."""
 LOWEST = 0.5
 """No stroke leaves a triangle below this height [px]: one further is tried instead."""
-TRIES = 30
-"""Points tried for each one wanted, where the mesh is dense already."""
+MISSES = 300
+"""Points that fit nowhere one after the other, after which the mesh is held to be dense."""
 
 
 def check_brush(radius: float, count: int, spread: str, seed: int) -> None:
@@ -88,9 +88,9 @@ def with_points(worked: Worked, points: Iterator[Point], count: int, *, lock: bo
         EditError: If not one fits.
     """
     mesh, locks = worked.mesh, worked.locks
-    tries = TRIES * count
-    while count > 0 and tries > 0:
-        tries -= 1
+    misses = 0
+    while count > 0 and misses < MISSES:
+        misses += 1
         point = next(points)
         if not (0 < point[0] < mesh.width and 0 < point[1] < mesh.height):
             continue
@@ -102,7 +102,7 @@ def with_points(worked: Worked, points: Iterator[Point], count: int, *, lock: bo
             continue
         locks = locks.without(bare=mesh.triangle_ids[triangle])
         mesh = split_triangles(mesh, triangle, place)
-        count -= 1
+        count, misses = count - 1, 0
     fresh = worked.fresh_vertices(mesh)
     if not len(fresh):
         raise EditError(

@@ -7,6 +7,8 @@ from warp_kernels.errors import EditError
 
 Point = tuple[float, float]
 """A position in the picture [px], x right and y down."""
+FURTHEST = 1e6
+"""No corner of a region lies further away [px]."""
 
 
 def check_inside(mesh: Mesh, at: Point) -> np.ndarray:
@@ -99,6 +101,10 @@ def check_polygon(mesh: Mesh, polygon: tuple[Point, ...]) -> None:
     """
     if len(polygon) < 3:
         raise EditError(f"a polygon of {len(polygon)} corners has no inside; give three or more")
+    if np.abs(polygon).max() > FURTHEST:
+        raise EditError(
+            f"a polygon with a corner further than {FURTHEST:g} px from the picture; draw it closer"
+        )
     right, down = np.max(polygon, axis=0)
     left, up = np.min(polygon, axis=0)
     if right < 0 or down < 0 or left > mesh.width or up > mesh.height:

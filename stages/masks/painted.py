@@ -7,6 +7,8 @@ import numpy as np
 from stages.masks.area import Area
 
 WHITE = 255
+FURTHEST = 1e6
+"""What a polygon has beyond this counts as lying there [px]."""
 
 
 def painted(areas: Iterable[Area], size: tuple[int, int]) -> np.ndarray:
@@ -35,7 +37,7 @@ def _in_disc(area: Area, size: tuple[int, int]) -> np.ndarray:
 
 def _in_polygon(polygon: tuple[tuple[float, float], ...], size: tuple[int, int]) -> np.ndarray:
     """Pixels whose centres lie in a polygon, [H, W] bool."""
-    begins = np.array(polygon)
+    begins = np.clip(np.array(polygon, dtype=np.float64), -FURTHEST, FURTHEST)
     return within_sides(begins, np.roll(begins, -1, axis=0), size)
 
 

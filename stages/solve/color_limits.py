@@ -10,6 +10,7 @@ import numpy as np
 from stages.mesh import Mesh, centres_of
 from stages.snapshot import with_origins
 from warp_kernels.color_model import CHANNELS, ColorModel
+from warp_kernels.energy.color_bands import Bands
 from warp_kernels.energy.color_extremes import BRIGHTEST, DARKEST, Extremes
 from warp_kernels.energy.nearby_colors import Departures, Nearby
 from warp_kernels.energy.workspace import Workspace
@@ -71,6 +72,8 @@ class Limiter:
     def __init__(self, workspace: Workspace) -> None:
         self._workspace = workspace
         self._extremes, self._nearby = Extremes(workspace), Nearby(workspace)
+        one_color = workspace.model.degree == 0 and not workspace.device.is_cuda
+        self._bands = Bands(workspace) if one_color else None
         self.torn = np.empty(0, dtype=np.int64)
         """Triangles of the mesh limited last that no one colour becomes, [N]."""
 
@@ -104,7 +107,10 @@ class Limiter:
         Time after time the worst pixel of a triangle gets what it asks for, as the rest of the
         triangle bears it best; the colours stay that leave the fewest such pixels.
         """
-        found = self._nearby.measure(coefficients, energies, limits)
+        doubtful = energies
+        if self._bands is not None:
+            doubtful = np.where(self._bands.suspects(coefficients, energies), energies, 0.0)
+        found = self._nearby.measure(coefficients, doubtful, limits)
         rows = self.torn = np.flatnonzero(found.counts)
         if not len(rows):
             return coefficients, energies

@@ -130,9 +130,10 @@ class Energy:
         """Edges whose flip pays, best first."""
         if not goal.calm:
             return ranked_flips(mesh, appraiser, least_share=self.flip, floor=0.0)
+        beside = None if goal.rest is None else goal.rest.unsettled(mesh)
         floor = self.calm_flip_floor * appraiser.energies(mesh).mean()
         calm = None if goal.unrest is None else goal.unrest.calm(mesh)
-        return ranked_flips(mesh, appraiser, self.calm_flip, floor, calm)
+        return ranked_flips(mesh, appraiser, self.calm_flip, floor, calm, beside)
 
     def _splits(
         self, mesh: Mesh, appraiser: Appraiser, goal: Goal, missing: int
@@ -142,6 +143,8 @@ class Energy:
         within = None
         if goal.unrest is not None and self._is_growing(mesh, goal):
             within = goal.unrest.boiling(mesh)
+        if goal.rest is not None:
+            within = goal.rest.unsettled(mesh)
         edges, gains, points = ranked_splits(mesh, appraiser, most, within)
         wanted = gains > LEAST_GAIN
         if goal.threshold is not None:
@@ -193,7 +196,7 @@ class Energy:
             missing: Triangles below the count; below 0 where there are too many.
         """
         excess = max(0, (1 - missing) // 2)
-        most = excess + self._relocations(mesh, goal)
+        most = excess + min(self._relocations(mesh, goal), int((gains > floors).sum()))
         if most == 0:
             return np.empty(0, dtype=np.int64)
         going, costs = ranked_collapses(mesh, appraiser, most, self._worth(mesh, goal))

@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 from math import inf
 
 from stages.motion.boiling import Unrest
+from stages.motion.rest import Rest
 
 
 @dataclass(frozen=True)
@@ -20,6 +21,8 @@ class Goal:
     """No triangle may become larger [px^2]."""
     unrest: Unrest | None = None
     """Where a followed picture boils, so that more may change there; None for nowhere."""
+    rest: Rest | None = None
+    """What has arrived, where nothing need be looked at; None for nothing."""
 
     def tightened(self, count: int, spare: float) -> "Goal":
         """The same goal with another count, and a part of the area to spare."""

@@ -23,6 +23,7 @@ def ranked_flips(
     least_share: float,
     floor: float,
     calm: np.ndarray | None = None,
+    beside: np.ndarray | None = None,
 ) -> np.ndarray:
     """Edges of the measured mesh whose flip pays.
 
@@ -32,9 +33,12 @@ def ranked_flips(
         least_share: Smallest gain, as a part of the energy of the edge's two triangles.
         floor: Smallest gain, where errors count as on the whole [code value^2 px].
         calm: How much of both counts at each triangle [0..1], [T]; None for all of it.
+        beside: Triangles of which an edge must be one, [T] bool; None for all.
     """
     energies = appraiser.energies(mesh)
     edges = mesh.edge_half_edges
+    if beside is not None:
+        edges = edges[beside_edges(mesh, beside, edges)]
     gains = appraiser.flip_gains(edges)
     before = energies[edges // 3] + energies[np.maximum(mesh.twins[edges], 0) // 3]
     least = np.maximum(least_share * before, floor * appraiser.emphasis(edges))

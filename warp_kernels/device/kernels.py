@@ -18,6 +18,7 @@ from typing import Any
 import warp as wp
 
 from warp_kernels.device.kernel_turn import waited_turn
+from warp_kernels.device.whole_kernels import remove_broken
 
 MOST_COMPILERS = 8
 """Threads that compile: each reads Warp's headers for itself, which takes as long as a kernel."""
@@ -67,6 +68,7 @@ class Kernels:
         folder = Path(wp.config.kernel_cache_dir or "")
         # all names before the first compilation, see above
         places = {module: folder / self._name(module) for module in modules}
+        remove_broken(places.values(), folder, lambda: None)
         missing = _missing(places)
         if not missing:
             return

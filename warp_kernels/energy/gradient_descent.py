@@ -5,6 +5,7 @@ import warp as wp
 from warp_kernels.device.device import Device
 from warp_kernels.device.exact import EXACT
 from warp_kernels.device.phase import Phase
+from warp_kernels.moments.due import MOVED
 from warp_kernels.raster import SUBPIXELS, to_fixed
 
 wp.set_module_options(EXACT)
@@ -140,9 +141,13 @@ def descend(
     vertex = span[0][0] + wp.tid()
     if vertex >= span[0][1]:
         return
+    here = vertices[vertex]
+    if wp.length_sq(freedom[vertex]) == wp.float64(0.0):
+        vertices_out[vertex] = here
+        moved_out[vertex] = 0
+        return  # what lies around it need not be known
     trust = controls[0]
     regularity = controls[1]
-    here = vertices[vertex]
     anchor = anchors[vertex]
     delta = wp.float64(probe[0]) * wp.float64(_INVERSE_UNIT)
     around = look_around(vertex, vertices, triangles, energies, fan_offsets, fan_corners, delta)
@@ -167,7 +172,7 @@ def descend(
     there = here + limited(step, trust, around.height, controls[2])
     vertices_out[vertex] = there
     away = to_fixed(there) - to_fixed(here)
-    moved_out[vertex] = wp.where(away[0] == 0 and away[1] == 0, 0, 1)
+    moved_out[vertex] = wp.where(away[0] == 0 and away[1] == 0, 0, wp.static(MOVED))
 
 
 def record_descent(
@@ -195,14 +200,15 @@ def record_descent(
         energies: E of all variants [code value^2 px], [T, 13].
         fan_offsets: Where each vertex's corners begin in `fan_corners`, [V + 1].
         fan_corners: Corner numbers 3 t + c around each vertex, [3 T].
-        freedom: 1 where a coordinate may change and 0 where the border holds it, [V] vec2d.
+        freedom: 1 where a coordinate may change and 0 where the border holds it or the vertex
+            rests, [V] vec2d.
         anchors: Position [px] and weight [code value^2] of the temporal term, [V] vec3d.
         probe: How far the variants' corners are displaced [1/256 px], [1].
         controls: Trust region [px], lambda [code value^2], shortest step that is taken [px], [3].
         memory_out: Each vertex's own trust region per axis [px] and its last step [px], read and
             written, [V] vec4d.
         vertices_out: Positions after the step [px], [V] vec2d.
-        moved_out: 1 where the step changes what a vertex covers, else 0, [V].
+        moved_out: `MOVED` where the step changes what a vertex covers, else 0, [V].
 
     Source: Lawonn & Guenther (2018), Sec. 3.2 and 4.1, Eqs. 7-11.
     Deviation: a diagonal Newton step takes the place of a fixed step size, since the twelve

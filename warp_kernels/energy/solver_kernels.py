@@ -7,6 +7,7 @@ from typing import Any
 
 from warp_kernels.color_model import ColorModel
 from warp_kernels.device.device import Device
+from warp_kernels.energy.color_bands import sift, widen_bands
 from warp_kernels.energy.color_extremes import find_extremes
 from warp_kernels.energy.fit import fit_kernel
 from warp_kernels.energy.gradient_descent import descend
@@ -46,7 +47,11 @@ def limiting_kernels(device: Device, model: ColorModel, drawn: ColorModel) -> li
         model: The colour model that is optimised.
         drawn: The one that is drawn; another one has a `Workspace` of its own.
     """
-    looking = [nearby_kernel(drawn), *([find_extremes] if drawn.degree > 0 else [])]
+    looking = [nearby_kernel(drawn)]
+    if drawn.degree > 0:
+        looking.append(find_extremes)
+    if model.degree == 0 and not device.is_cuda:
+        looking += [sift, widen_bands]
     if drawn is model:
         return looking
     return [nearby_kernel(model), *looking, *_own(device, drawn, "edges", False)]

@@ -13,6 +13,7 @@ from warp_kernels.device.device import Device
 from warp_kernels.device.exact import EXACT
 from warp_kernels.device.phase import Phase
 from warp_kernels.energy.fit import fit_moments
+from warp_kernels.moments.due import triangle_is_due
 from warp_kernels.moments.moment_layout import MomentLayout, moment_types
 from warp_kernels.moments.triangle_sides import side_sums
 from warp_kernels.moments.variants import DIRECTIONS, TRIANGLE_VARIANTS, first_version
@@ -46,8 +47,7 @@ def _edge_energy_kernel(layout: MomentLayout) -> Any:
         triangle = span[0][0] + wp.tid()
         if triangle >= span[0][1]:
             return
-        corners = triangles[triangle]
-        if moved[corners[0]] + moved[corners[1]] + moved[corners[2]] == 0:
+        if not triangle_is_due(moved, triangles[triangle]):
             return  # the energies of a triangle at rest still stand
         side = sides[triangle]
         color = side_color(color_sums, side[0], 0) + side_color(color_sums, side[1], 0)
@@ -131,8 +131,8 @@ def record_energies(
         layout: The polynomial colour and its integers.
         sums: "edges" or "fragments", the way in which the moments were summed.
         triangles: Corners, [T] vec3i. Not read with "fragments".
-        moved: 1 where a vertex has moved since the energies were found, [V]; with "edges" those
-            of a triangle at rest are left as they are.
+        moved: Marks of what has moved since the energies were found, see `due`, [V]; with "edges"
+            those of a triangle at rest are left as they are.
         sides: For each side c of a triangle 2 * edge + (1 where the edge runs the other way),
             [T] vec3i. Not read with "fragments".
         color_sums: [E, 4 K, 9] integers with "edges", [T, 13] vectors with "fragments".

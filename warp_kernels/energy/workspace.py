@@ -14,6 +14,7 @@ from warp_kernels.device.device import Device
 from warp_kernels.device.phase import Phase
 from warp_kernels.device.staging import ArrayRows
 from warp_kernels.energy.fit import record_fit
+from warp_kernels.energy.freedom import Freedom
 from warp_kernels.energy.gradient_descent import record_descent
 from warp_kernels.energy.variant_energies import record_energies
 from warp_kernels.moments.edge_moments import record_edge_moments
@@ -85,8 +86,7 @@ class Workspace:
     def load_image(self, pixels: np.ndarray, weights: np.ndarray | None = None) -> None:
         """Take in a picture and build its prefix tables.
 
-        Only the ratios of weights matter: they are divided by their greatest common divisor, so
-        weights that are all equal give the bits that no weights give.
+        Only ratios of weights matter; all equal ones give the bits that no weights give.
 
         Args:
             pixels: Code values, [H, W, 3] uint8.
@@ -141,17 +141,18 @@ class Workspace:
         write(self.sides, sides)
         write(self._fan_offsets, fan_offsets)
         write(self._fan_corners, fan_corners)
-        write(self._freedom, freedom)
-        write(self._moved, np.ones(len(vertices), dtype=np.int32))
+        self._freedom.load(freedom)
         self._resize()
 
-    def hold(self, anchors: np.ndarray) -> None:
+    def hold(self, anchors: np.ndarray, marks: np.ndarray | None = None) -> None:
         """Fix the temporal term, and forget the steps that vertices took before.
 
         Args:
             anchors: Position [px] and weight [code value^2] of every vertex, [V, 3].
+            marks: Which vertices rest, see `Freedom.rest`; None for none.
         """
         self._held = True
+        self._freedom.rest(marks)
         self.device.write(self._anchors, anchors)
         self.device.write(self._memory, np.tile((FAR, FAR, 0.0, 0.0), (self._counts[0], 1)))
 
@@ -201,19 +202,20 @@ class Workspace:
     def energies(self) -> np.ndarray:
         """E of all thirteen variants of every triangle as it stands, 1 px apart, [T, 13]."""
         self._displace(DISPLACEMENT)
+        self._freedom.know_all()
         self.device.run([self._moments[self._front], self._energy])
         self._seen = None
         return self.device.read(self._energies, self._counts[1])
 
     def last_energy(self) -> float:
-        """Energy of the mesh before the last step of `iterate` [code value^2 px]."""
+        """Energy of the mesh before the last step of `iterate` [code value^2 px], if none rests."""
         return float(self._looked()[1].sum())
 
     def _looked(self) -> list[np.ndarray]:
         """Vertices and energies, read at once: a second copy takes a card as long as the first."""
         if self._seen is None:
-            energies = ArrayRows(self._energies, self._counts[1], column=0)
-            self._seen = self.device.read_all([ArrayRows(self.standing, self._counts[0]), energies])
+            wanted = ArrayRows(self._energies, self._counts[1], column=0)
+            self._seen = self.device.read_all([ArrayRows(self.standing, self._counts[0]), wanted])
         return self._seen
 
     def moments(self) -> tuple[np.ndarray, np.ndarray]:
@@ -222,12 +224,12 @@ class Workspace:
         int64; in the wide layout the highest powers modulo 2^64.
         """
         self._displace(DISPLACEMENT)
+        self._freedom.know_all()
         self.device.run([self._moments[self._front]])
         count = self._counts[2 if self.sums == "edges" else 1]
-        color, area = self.device.read_all(
-            [ArrayRows(self._color_sums, count), ArrayRows(self._area_sums, count)]
-        )
-        return color.view(np.int64), area.view(np.int64)
+        sums = (self._color_sums, self._area_sums)
+        read = self.device.read_all([ArrayRows(array, count) for array in sums])
+        return read[0].view(np.int64), read[1].view(np.int64)
 
     def fit(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Best colours of the mesh as it stands; asked for again they are only read.
@@ -239,9 +241,8 @@ class Workspace:
         if not self._fitted:
             self.device.run([self._fit_sums[self._front], self._fit])
             self._fitted = True
-        fitted = (self._coefficients, self.fit_energies, self._fit_counts)
-        rows = [ArrayRows(array, self._counts[1]) for array in fitted]
-        coefficients, energies, counts = self.device.read_all(rows)
+        fitted, T = (self._coefficients, self.fit_energies, self._fit_counts), self._counts[1]
+        coefficients, energies, counts = self.device.read_all([ArrayRows(a, T) for a in fitted])
         return coefficients, energies, counts
 
     def _displace(self, displacement: float) -> None:
@@ -249,7 +250,7 @@ class Workspace:
         if displacement != self._displacement:
             self._displacement = displacement
             self.device.write(self._probe, np.array([round(displacement * SUBPIXELS)], np.int32))
-            self.device.write(self._moved, np.ones(self._counts[0], dtype=np.int32))
+            self._freedom.know_nothing()
 
     def _grow(self) -> None:
         had, needed = np.array(self.capacity), np.array(self._counts[:2])
@@ -269,10 +270,9 @@ class Workspace:
         self.sides = self._empty(triangles, wp.vec3i)
         self._fan_offsets = self._empty(vertices + 1, wp.int32)
         self._fan_corners = self._empty(3 * triangles, wp.int32)
-        self._freedom = self._empty(vertices, wp.vec2d)
+        self._freedom = Freedom(self.device, vertices)
         self._anchors = self._empty(vertices, wp.vec3d)
         self._memory = self._empty(vertices, wp.vec4d)
-        self._moved = self._empty(vertices, wp.int32)
         if self.sums == "fragments":
             self._color_sums = self._empty((triangles, TRIANGLE_VARIANTS), types.color)
             self._area_sums = self._empty((triangles, TRIANGLE_VARIANTS), types.area)
@@ -301,7 +301,7 @@ class Workspace:
             self.layout,
             self.sums,
             triangles=self.triangles,
-            moved=self._moved,
+            moved=self._freedom.marks,
             sides=self.sides,
             color_sums=self._color_sums,
             area_sums=self._area_sums,
@@ -316,13 +316,13 @@ class Workspace:
                 energies=self._energies,
                 fan_offsets=self._fan_offsets,
                 fan_corners=self._fan_corners,
-                freedom=self._freedom,
+                freedom=self._freedom.axes,
                 anchors=self._anchors,
                 probe=self._probe,
                 controls=self._controls,
                 memory_out=self._memory,
                 vertices_out=self._vertices[1 - front],
-                moved_out=self._moved,
+                moved_out=self._freedom.marks,
             )
             for front in (0, 1)
         ]
@@ -335,7 +335,7 @@ class Workspace:
                 self.layout,
                 vertices=front,
                 edges=self._edges,
-                moved=self._moved,
+                moved=self._freedom.marks,
                 probe=self._probe,
                 table=self.table,
                 size=self.size,
@@ -376,7 +376,7 @@ class Workspace:
             self.layout,
             vertices=vertices,
             edges=self._edges,
-            moved=self._moved,
+            moved=self._freedom.marks,
             probe=self._probe,
             table=self.table,
             size=self.size,

@@ -14,6 +14,7 @@ import warp as wp
 from warp_kernels.device.device import Device
 from warp_kernels.device.exact import EXACT
 from warp_kernels.device.phase import Phase
+from warp_kernels.moments.due import edge_is_due
 from warp_kernels.moments.edge_walk import row_walker
 from warp_kernels.moments.line_moments import line_moments
 from warp_kernels.moments.moment_layout import MomentLayout, moment_types
@@ -83,7 +84,7 @@ def _side_by_side_kernel(layout: MomentLayout) -> Any:
         if edge >= span[0][1]:
             return
         ends = edges[edge]
-        if moved[ends[0]] + moved[ends[1]] == 0:
+        if not edge_is_due(moved, ends):
             return  # the sums of an edge at rest still stand
         position, step, row_begin, row_count, sign, row, end = start_walks(
             to_fixed(vertices[ends[0]]), to_fixed(vertices[ends[1]]), probe[0], height
@@ -124,7 +125,7 @@ def _edge_kernel(layout: MomentLayout, versions: int) -> Any:
         edge = number / wp.static(versions)
         version = number - edge * wp.static(versions)
         ends = edges[edge]
-        if wp.static(versions > 1) and moved[ends[0]] + moved[ends[1]] == 0:
+        if wp.static(versions > 1) and not edge_is_due(moved, ends):
             return  # the sums of an edge at rest still stand
         a = to_fixed(vertices[ends[0]]) + end_displacement(version, 0, probe[0])
         b = to_fixed(vertices[ends[1]]) + end_displacement(version, 1, probe[0])
@@ -175,8 +176,8 @@ def record_edge_moments(
         layout: Fixes the moments and their integers.
         vertices: Positions [px], [V] vec2d.
         edges: Vertex numbers of both ends, [E] vec2i.
-        moved: 1 where a vertex has moved since the sums were taken, [V]; the nine versions of an
-            edge at rest are left as they are.
+        moved: Marks of what has moved since the sums were taken, see `due`, [V]; the nine versions
+            of an edge at rest are left as they are.
         probe: How far ends are displaced [1/256 px], [1].
         table: Prefix sums of the image, see `image_tables`.
         size: Width and height of the image [px].

@@ -1,6 +1,7 @@
 """The drawing that cuts are laid on: millimetres, y up, a layer a colour."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -30,6 +31,21 @@ def ezdxf() -> Any:
     return library
 
 
+@contextmanager
+def _without_times(library: Any) -> Iterator[None]:
+    """Let it write no times and no random numbers: the same input gives the same bits.
+
+    What a program that calls this one writes with it is as it was.
+    """
+    options = library.options
+    before = options.write_fixed_meta_data_for_testing
+    options.write_fixed_meta_data_for_testing = True
+    try:
+        yield
+    finally:
+        options.write_fixed_meta_data_for_testing = before
+
+
 class Sheet:
     """A drawing in the making.
 
@@ -40,9 +56,8 @@ class Sheet:
     def __init__(self, film: Film) -> None:
         library = ezdxf()
         self._library = library
-        # no times and no random numbers: the same input gives the same bits
-        library.options.write_fixed_meta_data_for_testing = True
-        self._document = library.new(VERSION, units=library.units.MM)
+        with _without_times(library):
+            self._document = library.new(VERSION, units=library.units.MM)
         self._space = self._document.modelspace()
         width, height = film.framing.canvas
         self._by = (film.options.mm or width) / width
@@ -156,4 +171,5 @@ class Sheet:
 
     def save(self, path: Path) -> None:
         """Write it."""
-        self._document.saveas(path)
+        with _without_times(self._library):
+            self._document.saveas(path)

@@ -6,7 +6,7 @@ from stages.solve.convergence import Convergence
 
 
 @dataclass(frozen=True)
-class Pace:
+class Rhythm:
     """The rounds of a later frame: some iterations, then one look at the topology."""
 
     round_length: int
@@ -28,8 +28,8 @@ class Pace:
         return Convergence(self.saving, patience=1)
 
 
-CALM = Pace(round_length=4, saving=0.008)
+CALM = Rhythm(round_length=4, saving=0.008)
 """Where little has changed one or two rounds are enough, where something moves fast more of them
 are worth it. Each look moves more vertices elsewhere than it did when looks were many."""
-BOILING = Pace(round_length=3, saving=0.0025)
+BOILING = Rhythm(round_length=3, saving=0.0025)
 """Where the picture boils triangles have a long way to go."""
