@@ -98,7 +98,7 @@ PICTURES: dict[str, Picture] = {
         quality=86,
     ),
     "pulse": Picture([of("out/pulse.mp4", 3, 12, 43, 50)], 480),
-    "build-up": Picture([of("out/build-up.mp4", 0, 25, 45, 72)], 480),
+    "build-up": Picture([of("out/build-up.mp4", 4, 20, 45, 72)], 480),
     "ink-to-colour": Picture([of("out/ink-to-colour.mp4", 10, 28, 45, 65)], 480, quality=86),
     "strobe-safe": Picture([of("out/strobe-safe.mp4", 7, 43, 53, 70)], 480, quality=86),
     "palettes": Picture(

@@ -33,7 +33,7 @@ def with_course(job: Job) -> Job:
     show = show_of(job.look, options.model, info)
     assert show is not None
     first, last = info.first_frame, info.last_frame or info.first_frame
-    show.check(first, last)
+    show.check(first, last, is_drawn=job.output.path is not None)
     found = {f"of_{name.split('.')[0]}": _steps(show, name, first, last) for name in MESH}
     return replace(job, solve=replace(options, course=Course(**found)))
 

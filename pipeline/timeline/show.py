@@ -178,19 +178,20 @@ class Show:
                 return float(line.at(index, self.clock.time_of_frame(index), 0))
         return placed.section.mesh.get(name)
 
-    def check(self, first: int, last: int) -> None:
+    def check(self, first: int, last: int, *, is_drawn: bool = True) -> None:
         """Find expressions that are no numbers before anything is drawn.
 
         Args:
             first: Number of the first frame that is looked at.
             last: Number of the last one.
+            is_drawn: Whether frames are drawn; else only what changes meshes is looked at.
 
         Raises:
             OptionError: If there is one.
         """
         for _, placed, begin, end in self._seen(first, last):
             for line in placed.lines:
-                if isinstance(line.course, Expression):
+                if isinstance(line.course, Expression) and (is_drawn or line.target.is_mesh):
                     line.values(begin, end)
 
     def _place(self, number: int, section: Section, look: Look, begin: float, end: float) -> None:

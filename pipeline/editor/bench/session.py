@@ -1,7 +1,7 @@
 """One track being edited: what any frame is now, and every change to it."""
 
 from collections import OrderedDict
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
@@ -13,6 +13,7 @@ from pipeline.edit_log.journal import EditJournal
 from pipeline.edit_log.painted_regions import check_style, painted_regions
 from pipeline.editor.bench.easel import Easel
 from pipeline.editor.bench.film import SolvedFilm
+from pipeline.editor.bench.live import Course, Live
 from pipeline.editor.bench.members import Members
 from pipeline.editor.bench.pictures import Pictures
 from pipeline.editor.bench.replays import Replays
@@ -32,7 +33,7 @@ from warp_kernels.errors import EditError, OutputError
 
 ANYWHERE = Run()
 """Any device, all cores."""
-EDITED, SOLVED, BEFORE = "edited", "solved", "before"
+EDITED, SOLVED, BEFORE, LIVE = "edited", "solved", "before", "live"
 VIEWS = (EDITED, SOLVED, BEFORE)
 """A frame with the edits just made, as the film has it, as it was before any edit."""
 MOST_FRAMES = 24
@@ -81,6 +82,8 @@ class Session:
         self.info = self.film.info
         self._pictures = Pictures(options, self.film.frames[-1])
         self._members = Members(self.film, options)
+        self._device = device
+        self.live: Live | None = None
         self.easel = Easel(device, options, (self.info.width, self.info.height))
         self._replays: OrderedDict[tuple[int, Basis], Replays] = OrderedDict()
         self._fitted: OrderedDict[tuple[int, str], tuple[Worked, Snapshot]] = OrderedDict()
@@ -177,9 +180,13 @@ class Session:
             EditError: If the track holds no such frame.
         """
         look = painted_regions(self.log, self.film.frames).over(look)
-        snapshot = self.shown(frame, look.fitted(self.easel.model), view)
+        model = look.fitted(self.easel.model)
+        if view == LIVE and self.live is not None and self.live.frame.index == frame:
+            snapshot = self.easel.fitted(self.live.frame, self.live.worked, model)
+        else:
+            snapshot = self.shown(frame, model, EDITED if view == LIVE else view)
         picture = self.picture(frame) if look.needs_source else None
-        shares = self._members.shares(look, frame, snapshot, is_edited=view == EDITED)
+        shares = self._members.shares(look, frame, snapshot, is_edited=view in (EDITED, LIVE))
         return self.easel.drawn(snapshot, picture, look, self.film.time(frame), shares)
 
     def thumbnail(self, frame: int) -> np.ndarray:
@@ -206,6 +213,7 @@ class Session:
             before = worked.get(edit.frame) or self.worked(edit.frame)
             worked[edit.frame] = edit.apply(before)
             check_style(edit)
+        self.live = None
         return self._journal.append(edits, after)
 
     def ghost(self, edit: Edit) -> Ghost:
@@ -220,12 +228,32 @@ class Session:
         is_gone = ~np.isin(before.vertex_ids, after.vertex_ids)
         return Ghost(after.vertices[is_fresh], before.vertices[is_gone])
 
+    def optimise(self, frame: int, given: Mapping[str, float]) -> Live:
+        """Take one step of the optimiser, from the frame with its edits on.
+
+        Args:
+            frame: Number of the frame.
+            given: See `Course.of`.
+
+        Raises:
+            EditError: If the track holds no such frame.
+            OptionError: If a value is impossible.
+        """
+        course = Course.of(self.options, given)
+        if self.live is None or self.live.frame.index != frame:
+            worked, picture = self.worked(frame), self.picture(frame)
+            self.live = Live(self._device, self.options, picture, worked)
+        self.live.step(course)
+        return self.live
+
     def undo(self) -> Edit | None:
         """Put the last edit out of force; None if there is none."""
+        self.live = None
         return self._journal.undo()
 
     def redo(self) -> Edit | None:
         """Put an edit in force again; None if there is none."""
+        self.live = None
         return self._journal.redo()
 
     def close(self) -> None:
@@ -256,6 +284,7 @@ class Session:
         self.film.close()
         self.film = SolvedFilm(self.path)
         self._members = Members(self.film, self.options)
+        self.live = None
         self._replays.clear()
         self._fitted.clear()
 
