@@ -13,7 +13,7 @@ from pipeline.edit_log.journal import EditJournal
 from pipeline.edit_log.painted_regions import check_style, painted_regions
 from pipeline.editor.bench.easel import Easel
 from pipeline.editor.bench.film import SolvedFilm
-from pipeline.editor.bench.live import Course, Live
+from pipeline.editor.bench.live import Descent, Live
 from pipeline.editor.bench.members import Members
 from pipeline.editor.bench.pictures import Pictures
 from pipeline.editor.bench.replays import Replays
@@ -233,13 +233,13 @@ class Session:
 
         Args:
             frame: Number of the frame.
-            given: See `Course.of`.
+            given: See `Descent.of`.
 
         Raises:
             EditError: If the track holds no such frame.
             OptionError: If a value is impossible.
         """
-        course = Course.of(self.options, given)
+        course = Descent.of(self.options, given)
         if self.live is None or self.live.frame.index != frame:
             worked, picture = self.worked(frame), self.picture(frame)
             self.live = Live(self._device, self.options, picture, worked)
