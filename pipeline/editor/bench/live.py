@@ -29,7 +29,7 @@ NEARER = 0.2
 
 
 @dataclass(frozen=True)
-class Course:
+class Descent:
     """What the optimiser aims at.
 
     Raises:
@@ -42,7 +42,7 @@ class Course:
     """How vertices move."""
 
     @classmethod
-    def of(cls, options: SolveOptions, given: Mapping[str, float]) -> "Course":
+    def of(cls, options: SolveOptions, given: Mapping[str, float]) -> "Descent":
         """The course of a solution, but for what a window has chosen.
 
         Args:
@@ -80,7 +80,7 @@ class Live:
         self._appraiser.hold(worked.locks)
         self.frame, self.worked, self.steps = frame, worked, 0
 
-    def step(self, course: Course) -> None:
+    def step(self, course: Descent) -> None:
         """One step of every vertex; now and then triangles come and go.
 
         Args:

@@ -105,7 +105,7 @@ class Window:
         """Have the optimiser take steps, each shown; what it was to do before is over.
 
         Args:
-            course: See `Course.of`.
+            course: See `Descent.of`.
             steps: How many; 0 to let it rest.
         """
         self._course, self._steps = course, steps
