@@ -1,6 +1,7 @@
 # make demo    convert a sample clip and put source and result side by side
 # make test    run every test          make lint    ruff, mypy, and tsc for the editor's page
 # make clean   remove what these made
+# make cuda-check  what can be known of CUDA without a card (needs g++; takes some minutes)
 #
 # Needs only Python 3.11 or newer and make; everything is installed into .venv.
 
@@ -15,7 +16,9 @@ DEMO_SHEET := $(basename $(DEMO_VIDEO))_sheet.png
 TSC := $(VENV)/typescript/node_modules/typescript/bin/tsc
 SOURCES := $(shell find warp_kernels stages pipeline -name '*.py' -o -name '*.toml')
 
-.PHONY: demo test lint clean
+CARD_TESTS := tests tests/card_emulated.py
+
+.PHONY: demo test lint cuda-check clean
 .DELETE_ON_ERROR:
 
 demo: $(DEMO_SHEET)
@@ -31,6 +34,11 @@ lint: $(VENV)/.installed-dev $(TSC)
 	@$(BIN)/mypy
 	@$(BIN)/mypy --strict --follow-imports=silent tests/client_of_trimotion.py
 	@$(BIN)/node $(TSC) --project pipeline/editor/page/jsconfig.json
+
+cuda-check: $(VENV)/.installed-dev
+	@$(BIN)/python -m benchmarks.card_compile
+	@$(BIN)/python -m pytest --emulated $(CARD_TESTS) \
+		--numprocesses=logical --maxprocesses=4 --dist=worksteal
 
 clean:
 	@rm -rf $(VENV) demo out build *.egg-info .pytest_cache .ruff_cache .mypy_cache .hypothesis

@@ -49,9 +49,13 @@ RUNTIME_PACKAGES = frozenset({"warp", "numpy", "scipy", "cv2", "av", "tqdm"})
 EXTRA_PACKAGES = frozenset({"distributed", "ezdxf", "pxr", "starlette", "uvicorn"})
 """Import names of what extras install; it is imported only where it is used."""
 
-ALLOCATING_FILES = frozenset({"warp_kernels/energy/workspace.py", "warp_kernels/device/device.py"})
+ALLOCATING_FILES = frozenset(
+    {"warp_kernels/energy/workspace.py"}
+    | {f"warp_kernels/device/{name}.py" for name in ("device", "staging")}
+)
 """The only files that ask Warp for memory: the arrays of a job come from the workspace or through
-`Device.empty`, which owns beside them the spans of phases and the counters of a team."""
+`Device.empty`, which owns beside them the spans of phases, the counters of a team, and the memory
+in which copies wait."""
 
 ALLOCATORS = frozenset(
     f"{kind}{suffix}" for kind in ("zeros", "ones", "empty", "full") for suffix in ("", "_like")
@@ -59,7 +63,10 @@ ALLOCATORS = frozenset(
 TYPE_KEYWORDS = frozenset({"dtype", "ndim"})
 """`wp.array` with these alone is a type, not memory."""
 
-WARP_HOMES = frozenset({"warp_kernels/device/device.py", "warp_kernels/device/runtime.py"})
+WARP_HOMES = frozenset(
+    f"warp_kernels/device/{name}.py"
+    for name in ("device", "emulation", "launcher", "runtime", "staging", "team")
+)
 """The only files that call Warp while the program runs."""
 WARP_CALLS = ALLOCATORS | {
     *("launch", "launch_tiled", "copy", "init", "synchronize", "synchronize_device"),

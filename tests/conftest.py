@@ -2,6 +2,7 @@
 
 import os
 import random
+import shutil
 import signal
 from collections.abc import Callable
 from functools import partial
@@ -17,7 +18,7 @@ from tests.golden_images import compare_with_golden
 from warp_kernels.device.barrier import meet
 from warp_kernels.device.kernel_cache import settle_cache
 from warp_kernels.device.kernels import compile_early
-from warp_kernels.device.runtime import WARP, find_device, quiet
+from warp_kernels.device.runtime import EMULATED, WARP, find_device, quiet
 
 GOLDEN_FOLDER = Path(__file__).parent / "golden"
 SEED = 20180806
@@ -35,12 +36,32 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """Add `--update-golden`."""
+    """Add `--update-golden` and `--emulated`."""
     parser.addoption(
         "--update-golden",
         action="store_true",
         help="store what is rendered as the new golden pictures; look at them before a commit",
     )
+    parser.addoption(
+        "--emulated",
+        action="store_true",
+        help="run the tests of devices, and no others, on a card that is emulated (needs g++)",
+    )
+
+
+def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
+    """Choose the devices: CPU and CUDA, or the emulated card."""
+    if "device" in metafunc.fixturenames:
+        devices = {"cpu": "cpu", "cuda": "cuda:0"}
+        if metafunc.config.getoption("--emulated"):
+            devices = {"emulated": EMULATED}
+        metafunc.parametrize("device", devices.values(), ids=devices, indirect=True)
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """With `--emulated` only tests of the emulated card are left."""
+    if config.getoption("--emulated"):
+        items[:] = [item for item in items if "emulated" in item.name]
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -51,10 +72,12 @@ def no_first_run() -> None:
         compile_early(find_device("cpu"), [meet])
 
 
-@pytest.fixture(params=["cpu", "cuda:0"], ids=["cpu", "cuda"])
+@pytest.fixture
 def device(request: pytest.FixtureRequest) -> str:
     """Name a Warp device; CUDA is skipped where there is none, unless FAIL_WITHOUT_CUDA=1."""
-    if request.param != "cpu" and wp.get_cuda_device_count() == 0:
+    if request.param == EMULATED and shutil.which("g++") is None:
+        pytest.skip("no g++ for the emulated card")
+    if request.param == "cuda:0" and wp.get_cuda_device_count() == 0:
         absent = "no CUDA device"
         if os.environ.get("FAIL_WITHOUT_CUDA") == "1":
             pytest.fail(f"{absent}, and FAIL_WITHOUT_CUDA=1")

@@ -17,8 +17,11 @@ import warp as wp
 from stages.optimize import load_mesh, place_mesh
 from tests.kernel_samples import noise, poisoned_workspace, random_mesh, waves
 from warp_kernels.color_model import COLOR_MODELS, CONSTANT, LINEAR, ColorModel
-from warp_kernels.device.device import PART, Device, Phase
+from warp_kernels.device.card_memory import fitting_scale, memory_problem
+from warp_kernels.device.device import Device
+from warp_kernels.device.phase import Phase
 from warp_kernels.device.runtime import driver_problem
+from warp_kernels.device.team import PART
 from warp_kernels.energy.workspace import Workspace
 
 WIDTH, HEIGHT = 61, 47
@@ -273,6 +276,7 @@ import os, sys
 import warp as wp
 level, before = wp.config.log_level, dict(os.environ)
 stream = os.fstat(2)
+from warp_kernels.device.card_memory import fitting_scale, memory_problem
 from warp_kernels.device.device import Device
 with Device("cpu", 2) as device:
     array = device.empty(3, int)
@@ -310,3 +314,21 @@ def test_old_drivers_are_named() -> None:
         "",
         "",
     ]
+
+
+@pytest.mark.parametrize(
+    ("taken", "asked", "free", "scale"),
+    [
+        (6_000, 6_000, 2_000, 0.75),  # 90 % of 8,000 of 12,000 wanted: a share of 0.6 of the area
+        (0, 1_000, 10, 0.05),
+        (0, 1_000_000, 10, 0.0),
+        (1_000, 1, 1_000_000, 0.95),  # it would have fitted: still something smaller is named
+    ],
+)
+def test_a_full_card_names_what_fits(taken: int, asked: int, free: int, scale: float) -> None:
+    """Memory grows with the area, so a scale is a root."""
+    assert fitting_scale(taken, asked, free) == pytest.approx(scale)
+    said = memory_problem("cuda:0", taken * 10**6, asked * 10**6, free * 10**6)
+    assert f"{asked} MB more" in said
+    assert "--device cpu" in said
+    assert ("--scale" in said) == (scale > 0)

@@ -35,7 +35,7 @@ from stages.mesh import Mesh
 from stages.validate import assert_valid
 from tests.editing import opened, write_job
 from tests.tracks import rows_of
-from warp_kernels.errors import EditError
+from warp_kernels.errors import EditError, OptionError
 
 PLACES = st.tuples(st.floats(0.5, 95.5), st.floats(0.5, 63.5))
 EDITS = st.one_of(
@@ -231,3 +231,38 @@ def test_looking_leaves_the_track_as_it_was(solved: Path, session: Session) -> N
     session.drawn(0, look_of([]))
     session.make([SplitTriangle(0, (40.0, 30.0))], after=0)
     assert rows_of(session.path) == before
+
+
+def test_the_optimiser_works_step_by_step(session: Session) -> None:
+    """The error falls, what is held stays, meshes are valid, and nothing is kept of it."""
+    session.make([Insert(0, (40.0, 30.0), 15.0, 5)], after=0)
+    before = session.worked(0)
+    errors = []
+    for _ in range(24):
+        live = session.optimise(0, {"triangles": 40})
+        assert_valid(live.worked.mesh)
+        errors.append(live.rmse)
+    assert errors[-1] < 0.95 * errors[0]
+    now = live.worked.mesh
+    ids = before.locks.vertices
+    assert len(ids) > 0
+    held = now.vertices[np.isin(now.vertex_ids, ids)]
+    put = before.mesh.vertices[np.isin(before.mesh.vertex_ids, ids)]
+    assert np.abs(held - put).max() < 1e-3
+    assert session.worked(0) is before
+    assert session.state()["edits"] == 1
+
+
+def test_the_optimiser_goes_where_it_is_led(session: Session) -> None:
+    """More triangles, fewer, and a threshold that none exceeds."""
+    for wanted in (70, 30):
+        for _ in range(90):
+            live = session.optimise(0, {"triangles": wanted})
+        assert abs(live.worked.mesh.triangle_count - wanted) <= 2
+    for _ in range(30):
+        live = session.optimise(0, {"triangles": 90, "error": 200.0})
+    assert live.worked.mesh.triangle_count <= 34
+    with pytest.raises(OptionError, match="--trust-region"):
+        session.optimise(0, {"trust_region": -1.0})
+    session.undo()
+    assert session.live is None

@@ -5,6 +5,7 @@ Where no Chromium is found these tests are skipped, unless FAIL_WITHOUT_CHROMIUM
 
 import io
 import os
+import re
 from collections.abc import Iterator
 from dataclasses import fields
 from typing import Any
@@ -335,6 +336,23 @@ def test_styles_are_stacked_and_changed(page: Page, server: Served) -> None:
     expect(page.locator("#toast")).to_contain_text("#zzz")
 
 
+def test_the_optimiser_is_watched(page: Page, server: Served) -> None:
+    """Play, pause, step; an edit goes back to the frame with edits; errors are shown."""
+    page.locator("#optimise").click()
+    expect(page.locator("#optimiser-told")).to_contain_text(re.compile("step [1-9][0-9]"))
+    expect(page.locator("#optimise")).to_have_text("Pause")
+    page.locator("#optimise").click()
+    expect(page.locator("#optimise")).to_have_text("Play")
+    page.wait_for_timeout(500)
+    before = page.locator("#optimiser-told").inner_text()
+    page.keyboard.press(";")
+    expect(page.locator("#optimiser-told")).not_to_have_text(before)
+    page.locator("#set-errors").fill("1")
+    page.mouse.click(*place(page, *find(page, "face")))
+    page.wait_for_function("() => trimotion.view === 'edited' && !trimotion.isLooking")
+    assert log_of(server) == []
+
+
 def test_a_style_is_painted_onto_triangles(page: Page, server: Served) -> None:
     page.keyboard.press("t")
     page.locator("#set-radius").fill("12")
@@ -368,7 +386,6 @@ def test_time_and_the_way_through_a_shot(browser: Browser, clip_server: Served) 
         shown[view] = page.evaluate("() => trimotion.mesh.held.reduce((sum, one) => sum + one, 0)")
     assert shown == {"before": 0, "solved": 1}
     page.keyboard.press(" ")
-    page.wait_for_function("() => trimotion.player.shown > 1")
     page.wait_for_function("() => !trimotion.isPlaying && trimotion.frame === 11")
     page.locator("#render").click()
     expect(page.locator("#toast")).to_contain_text("Rendering clip")

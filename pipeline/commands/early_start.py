@@ -23,8 +23,10 @@ def _compile(command: str, name: str) -> None:
         from warp_kernels.device.barrier import meet
         from warp_kernels.device.kernel_cache import settle_cache
         from warp_kernels.device.kernels import compile_early
-        from warp_kernels.device.runtime import WARP, find_device, quiet
+        from warp_kernels.device.runtime import EMULATED, WARP, find_device, quiet
 
+        if name == EMULATED:
+            return
         if command == "render":
             from warp_kernels.drawing.gbuffer import fill_triangles as first
         else:

@@ -31,7 +31,7 @@ WINDOW = 6
 """Frames before and after one that a map is smoothed over, the nearer the more."""
 
 
-class _Part(Protocol):
+class _Attending(Protocol):
     """One member of `--focus`, over the frames of one shot."""
 
     def see(self, frame: Frame, *, is_last: bool) -> None:
@@ -88,7 +88,7 @@ class Attention:
             frames: Frames in order.
         """
         waiting: deque[InShot] = deque()
-        parts: list[_Part] = []
+        parts: list[_Attending] = []
         # without members nothing is looked for, and no frame waits for the next one
         for seen, is_last in _with_ends(frames) if self._members else ():
             if seen.opens_shot or not parts:
@@ -107,7 +107,7 @@ class Attention:
         elif self._spelled != "none":
             self.notes.append(f"--focus {self._spelled}")
 
-    def _part(self, member: Focus) -> _Part:
+    def _part(self, member: Focus) -> _Attending:
         """What a member becomes over one shot."""
         if isinstance(member, Glance):
             return _Glances(member)
@@ -116,7 +116,7 @@ class Attention:
         is_still = self._info.kind == "image"
         return FaceTracks(self._search, size, self._area, self._step, is_still=is_still)
 
-    def _weighed(self, frame: Frame, parts: Sequence[_Part]) -> Frame:
+    def _weighed(self, frame: Frame, parts: Sequence[_Attending]) -> Frame:
         """A frame with the weights that all members together give it."""
         total: np.ndarray | None = None
         for member, part in zip(self._members, parts, strict=True):

@@ -8,7 +8,7 @@ from warp_kernels.errors import OptionError
 MAX_THREADS = 1024
 """More than any machine has cores; beyond it a number is a mistake."""
 
-_DEVICE = re.compile(r"auto|cpu|cuda(:\d+)?")
+_DEVICE = re.compile(r"auto|cpu|cuda(:\d+)?|cuda-emulated")
 
 
 @dataclass(frozen=True)

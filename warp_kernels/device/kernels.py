@@ -24,8 +24,9 @@ MOST_COMPILERS = 8
 """Threads that compile: each reads Warp's headers for itself, which takes as long as a kernel."""
 COMPILER = "trimotion-compiler"
 """Name of these threads."""
-CUDA_BLOCK = 256
-"""Threads of a block in a launch on a card that does not say otherwise; on the CPU it is one."""
+CUDA_BLOCK = 64
+"""Threads of a block on a card; on the CPU it is one. A mesh has a few thousand elements: in blocks
+of 256, as Warp would have them, they would keep a few of a card's processors busy."""
 
 _pool: ThreadPoolExecutor | None = None
 """The threads that an early start has left: they have read the headers."""
@@ -88,13 +89,13 @@ class Kernels:
 
     def _name(self, module: Any) -> str:
         """Of the folder of a compiled module."""
-        return str(module.get_module_identifier(_block_of(self._device)))
+        return str(module.get_module_identifier(block_of(self._device)))
 
     def _compile(self, modules: list[Any], look: Callable[[], None]) -> None:
         """Compile modules side by side, and look after each."""
         pool = _take_pool()
         try:
-            block = _block_of(self._device)
+            block = block_of(self._device)
             jobs = [
                 pool.submit(wp.load_module, module, self._device, block_dim=block)
                 for module in modules
@@ -117,7 +118,7 @@ def compile_early(device: Any, kernels: list[Any]) -> None:
     global _pool
     _pool = _take_pool()
     with waited_turn(Path(wp.config.kernel_cache_dir or ""), lambda: None):
-        block = _block_of(device)
+        block = block_of(device)
         jobs = [
             _pool.submit(wp.load_module, kernel.module, device, block_dim=block)
             for kernel in kernels
@@ -126,7 +127,7 @@ def compile_early(device: Any, kernels: list[Any]) -> None:
             job.result()
 
 
-def _block_of(device: Any) -> int:
+def block_of(device: Any) -> int:
     """Threads of a block of a launch."""
     return 1 if device.is_cpu else CUDA_BLOCK
 

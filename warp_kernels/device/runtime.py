@@ -16,6 +16,8 @@ WARP = RLock()
 """Held around every call that launches, copies, allocates or captures, and by whoever waits for
 such a call: a capture on the CPU records the launches of all threads, and on CUDA a copy changes
 the stream on which another thread captures."""
+EMULATED = "cuda-emulated"
+"""Name of a device for tests: the code for CUDA, run by the CPU."""
 ERRORS = 2
 """Number of the stream for errors of every process."""
 
@@ -37,7 +39,7 @@ def find_device(name: str) -> Any:
     """Start Warp if nobody has, and find one of its devices.
 
     Args:
-        name: "auto" (CUDA if present), "cpu", or "cuda:N".
+        name: "auto" (CUDA if present), "cpu", "cuda:N", or "cuda-emulated" (the CPU's memory).
 
     Raises:
         OptionError: If there is no such device.
@@ -46,6 +48,8 @@ def find_device(name: str) -> Any:
         _start()
         if name == "auto":
             name = "cuda:0" if wp.get_cuda_device_count() else "cpu"
+        elif name == EMULATED:
+            name = "cpu"
         try:
             return wp.get_device(name)
         except Exception as error:  # Warp raises several types for an unknown device

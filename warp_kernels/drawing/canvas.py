@@ -6,14 +6,22 @@ from typing import Any
 import numpy as np
 import warp as wp
 
-from warp_kernels.device.device import Device, Phase
+from warp_kernels.device.device import Device
+from warp_kernels.device.phase import Phase
 from warp_kernels.drawing.coats import coats_of
-from warp_kernels.drawing.gbuffer import LEAST_ROWS, fill_triangles, record_gbuffer
+from warp_kernels.drawing.gbuffer import (
+    LEAST_ROWS,
+    band_rows,
+    fill_threads,
+    fill_triangles,
+    record_gbuffer,
+)
 from warp_kernels.drawing.layers import Layers, LayerTables
 from warp_kernels.drawing.moved import MAP, Moved, MovedTables, clear_rows, record_clear, rows_of
 from warp_kernels.drawing.paint import Paint, shapes_of
 from warp_kernels.drawing.sample_points import LIST, parts_of_a_pixel
-from warp_kernels.drawing.shade import channels_of, record_shade, shade_kernel
+from warp_kernels.drawing.shade import record_shade, shading_kernel
+from warp_kernels.drawing.store import channels_of
 from warp_kernels.drawing.triangle_setup import prepare_kernel, record_prepare
 from warp_kernels.limits import MAX_SIDE, SAMPLES
 from warp_kernels.scene.places import centres, hashes_of, to_places
@@ -22,9 +30,6 @@ from warp_kernels.scene.source_picture import reduced, step_for
 from warp_kernels.scene.stroke_lay import own_lay
 from warp_kernels.scene.texels import Texels, pack
 from warp_kernels.styles import Style
-
-BAND_SAMPLES = 1 << 18
-"""Samples of a band, for which triangles are found before they are shaded: 1 MB stays in cache."""
 
 
 class Canvas:
@@ -70,11 +75,11 @@ class Canvas:
         device.expect(self._kernels(fades=False))
         width, height = output
         columns = width * self.samples
-        self._band = max(1, min(height, BAND_SAMPLES // (columns * self.samples)))
+        self._band = band_rows(device, output, self.samples)
         # a row more than there is: the last pixel's samples are read together with one that is not
         self._triangle_of = device.empty((self._band * self.samples + 1, columns), int)
         device.clear(self._triangle_of)  # where a mesh has holes, what stood there is looked up
-        self._points = device.empty((self._band, LIST), int)
+        self._points = device.empty((1 if device.is_cuda else self._band, LIST), int)
         self.channels = channels_of(self._coats)
         """Numbers of a pixel: 3, or 4 with alpha."""
         self._pixels = device.empty((height, width, self.channels), wp.uint8)
@@ -86,7 +91,7 @@ class Canvas:
 
     def _kernels(self, *, fades: bool) -> list[Any]:
         """What drawing a frame launches, those first that take longest to compile."""
-        shade = shade_kernel(self._coats, self.samples, fades)
+        shade = shading_kernel(self.device, self._coats, self.samples, fades)
         preparing = (prepare_kernel(prepare) for prepare in self._prepares.values())
         return [shade, *preparing, fill_triangles, *([clear_rows] if self._moves else [])]
 
@@ -217,7 +222,7 @@ class Canvas:
             rows = min(self._band, self.output[1] - top)
             for phase in (*clearing, shading):
                 phase.resize(rows)
-            filling.resize(rows, threads=triangles)
+            filling.resize(rows, threads=fill_threads(self.device, triangles))
             phases += [*clearing, filling, shading]
         return phases
 

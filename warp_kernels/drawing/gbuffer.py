@@ -8,24 +8,48 @@ doubled border can show, and no order of threads matters.
 
 import warp as wp
 
-from warp_kernels.device.device import Device, Phase
+from warp_kernels.device.device import Device
 from warp_kernels.device.exact import EXACT
+from warp_kernels.device.phase import Phase
 from warp_kernels.raster import SUBPIXELS, column_of, to_fixed, walk_edge
 
 wp.set_module_options(EXACT)
 
 _UNIT = wp.constant(SUBPIXELS)
+BAND_SAMPLES = 1 << 18
+"""Samples of a band, for which triangles are found before they are shaded: 1 MB stays in cache."""
 LEAST_ROWS = 1
 """Rows of pixels that are worth a thread: bands are so low that with more some would have none."""
+CARD_LANES, CARD_STRIPS = 32, 32
+"""On a card so many threads fill a row of a triangle, and so many strips of it are filled at once:
+a large one would else keep a single thread busy for longer than all others together."""
+
+
+def band_rows(device: Device, output: tuple[int, int], samples: int) -> int:
+    """Rows of pixels of a band: on a card, which has no use for bands, all.
+
+    Args:
+        device: Where to run.
+        output: Width and height [px].
+        samples: Samples of a pixel, across and down each.
+    """
+    width, height = output
+    fitting = height if device.is_cuda else BAND_SAMPLES // (width * samples**2)
+    return max(1, min(height, fitting))
+
+
+def fill_threads(device: Device, triangles: int) -> int:
+    """Kernel threads that fill so many triangles, see `Phase.resize`."""
+    return triangles * CARD_LANES * CARD_STRIPS if device.is_cuda else triangles
 
 
 @wp.func_native("""
     int* const at = (int*)line;
     int column = begin;
 #if defined(__CUDA_ARCH__)
-    if (overlaps) {
-        for (; column < end; ++column) atomicMax(at + column, triangle);
-        return;
+    for (column += lane; column < end; column += lanes) {
+        if (overlaps) atomicMax(at + column, triangle);
+        else at[column] = triangle;
     }
 #else
     typedef int Sixteen __attribute__((ext_vector_type(16), aligned(4)));
@@ -40,15 +64,26 @@ LEAST_ROWS = 1
         *(Four*)(at + end - 4) = triangle;
         return;
     }
-#endif
     for (; column < end; ++column) at[column] = triangle;
+#endif
 """)
-def fill_run(line: wp.uint64, begin: int, end: int, triangle: int, overlaps: int):
+def fill_run(
+    line: wp.uint64, begin: int, end: int, triangle: int, overlaps: int, lane: int, lanes: int
+):
     """Fill a part of a row: whole registers, the last of which overlaps the one before.
 
-    Where triangles overlap the last one is seen; on the CPU it comes last.
+    On a card `lanes` threads fill it together, neighbours side by side. Where triangles overlap
+    the last one is seen; on the CPU it comes last.
     """
     ...
+
+
+@wp.func
+def strip_of(span: wp.vec2i, samples: int, strip: int, strips: int) -> wp.vec2i:
+    """First row of samples of a strip of rows of pixels, and its height."""
+    rows = (span[1] - span[0]) * samples
+    share = (rows + strips - 1) / strips
+    return wp.vec2i(span[0] * samples + strip * share, wp.min(share, rows - strip * share))
 
 
 @wp.kernel(enable_backward=False)
@@ -62,16 +97,18 @@ def fill_triangles(
     first_row: int,
     samples: int,
     overlaps: int,
+    lanes: int,
+    strips: int,
     # Out:
     triangle_out: wp.array2d(dtype=int),
 ):
-    """Fill some rows of one triangle, between its long edge and the two short ones."""
-    triangle = wp.tid()
+    """Fill a strip of one triangle, between its long edge and the two short ones."""
+    lane, triangle = wp.tid() % lanes, wp.tid() / lanes / strips
     if triangle >= count[0]:
         return
     width = triangle_out.shape[1]
-    begin = span[0][0] * samples
-    height = (span[0][1] - span[0][0]) * samples
+    strip = strip_of(span[0], samples, wp.tid() / lanes % strips, strips)
+    begin, height = strip[0], strip[1]
     corners = triangles[triangle]
     above = wp.vec2i(0, (first_row + begin) * _UNIT)
     top = to_fixed(wp.cw_mul(vertices[corners[0]], scale)) - above
@@ -105,7 +142,7 @@ def fill_triangles(
         short_column = column_of(short.position)
         column = wp.max(wp.min(long_column, short_column), 0)
         end = wp.min(wp.max(long_column, short_column), width)
-        fill_run(line, column, end, triangle, overlaps)
+        fill_run(line, column, end, triangle, overlaps, lane, lanes)
         long.position += long.step
         short.position += short.step
         line += pitch
@@ -142,7 +179,9 @@ def record_gbuffer(
         overlaps: Whether triangles may lie over each other: what comes later is seen then, and the
             band was emptied before.
     """
+    spread = (CARD_LANES, CARD_STRIPS) if device.is_cuda else (1, 1)
     inputs = [vertices, triangles, count, wp.vec2d(*scale), first_row, samples, int(overlaps)]
+    inputs += spread
     return device.record(
         fill_triangles, inputs, [triangle_out], smallest_part=LEAST_ROWS, flows_on=True
     )

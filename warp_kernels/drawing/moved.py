@@ -12,8 +12,9 @@ from typing import Any
 import numpy as np
 import warp as wp
 
-from warp_kernels.device.device import Device, Phase
+from warp_kernels.device.device import Device
 from warp_kernels.device.exact import EXACT
+from warp_kernels.device.phase import Phase
 from warp_kernels.drawing.layers import Layers
 from warp_kernels.drawing.paint import Paint, joined_paint
 from warp_kernels.limits import MAX_SIDE

@@ -15,8 +15,9 @@ from typing import Any
 
 import warp as wp
 
-from warp_kernels.device.device import Device, Phase
+from warp_kernels.device.device import Device
 from warp_kernels.device.exact import EXACT
+from warp_kernels.device.phase import Phase
 from warp_kernels.drawing.blend import Coat, stack_of
 from warp_kernels.drawing.cross_fade import see_through
 from warp_kernels.drawing.gbuffer import LEAST_ROWS
@@ -33,39 +34,13 @@ from warp_kernels.drawing.sample_points import (
     TRIANGLE,
     point_lister,
 )
+from warp_kernels.drawing.shade_pixels import pixel_kernel
+from warp_kernels.drawing.store import channels_of, store_opaque, store_transparent
 from warp_kernels.scene.scene import Sample, Scene, StyleParameters, extent_of
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
 
 Values = wp.types.vector(length=ROOM, dtype=wp.float32)
-
-
-@wp.func
-def code_value(value: float) -> wp.uint8:
-    """Round to a code value."""
-    return wp.uint8(int(wp.clamp(value, 0.0, 255.0) + 0.5))
-
-
-@wp.func
-def store_opaque(
-    out: wp.array(dtype=wp.uint8), k: int, red: float, green: float, blue: float, opacity: float
-):
-    """Write a pixel through which nothing shows."""
-    out[3 * k] = code_value(red)
-    out[3 * k + 1] = code_value(green)
-    out[3 * k + 2] = code_value(blue)
-
-
-@wp.func
-def store_transparent(
-    out: wp.array(dtype=wp.uint8), k: int, red: float, green: float, blue: float, opacity: float
-):
-    """Write a pixel with straight alpha."""
-    whole = wp.max(opacity, 1.0e-6)
-    out[4 * k] = code_value(red / whole)
-    out[4 * k + 1] = code_value(green / whole)
-    out[4 * k + 2] = code_value(blue / whole)
-    out[4 * k + 3] = code_value(255.0 * opacity)
 
 
 @cache
@@ -182,11 +157,6 @@ def _stretch_drawer(coats: tuple[Coat, ...], samples: int, fades: bool) -> Any:
     return draw_stretch
 
 
-def channels_of(coats: tuple[Coat, ...]) -> int:
-    """Numbers of a pixel: 3, or 4 with alpha if no coat is opaque."""
-    return 3 if any(coat.is_opaque for coat in coats) else 4
-
-
 @cache
 def shade_kernel(coats: tuple[Coat, ...], samples: int, fades: bool) -> Any:
     """The kernel that draws a row with a stack of styles; see `record_shade`."""
@@ -231,6 +201,12 @@ def shade_kernel(coats: tuple[Coat, ...], samples: int, fades: bool) -> Any:
     return shade
 
 
+def shading_kernel(device: Device, coats: tuple[Coat, ...], samples: int, fades: bool) -> Any:
+    """The kernel that draws a stack of styles on a device."""
+    make = pixel_kernel if device.is_cuda else shade_kernel
+    return make(coats, samples, fades)
+
+
 def record_shade(
     device: Device,
     *,
@@ -247,7 +223,7 @@ def record_shade(
     points_out: wp.array,
     canvas_out: wp.array,
 ) -> Phase:
-    """Prepare the launch that shades a band of the output, row by row.
+    """Prepare the launch that shades a band of the output, row by row; on a card pixel by pixel.
 
     Args:
         device: Where to run.
@@ -267,7 +243,10 @@ def record_shade(
             with straight alpha.
     """
     inputs = [scene, parameters, layers, moved, triangle_of, top]
-    kernel = shade_kernel(coats, samples, fades)
+    kernel = shading_kernel(device, coats, samples, fades)
+    if device.is_cuda:
+        columns = canvas_out.shape[1]
+        return device.record(kernel, inputs, [points_out, canvas_out], per_element=columns)
     # as the rows of the labels are spread: each thread shades those that it has filled
     return device.record(
         kernel,

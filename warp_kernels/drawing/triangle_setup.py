@@ -5,8 +5,9 @@ from typing import Any
 
 import warp as wp
 
-from warp_kernels.device.device import Device, Phase
+from warp_kernels.device.device import Device
 from warp_kernels.device.exact import EXACT
+from warp_kernels.device.phase import Phase
 from warp_kernels.scene.scene import Numbers, Scene, StyleParameters
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})

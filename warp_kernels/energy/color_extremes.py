@@ -6,8 +6,8 @@ import numpy as np
 import warp as wp
 
 from warp_kernels.color_model import CHANNELS
-from warp_kernels.device.device import Phase
 from warp_kernels.device.exact import EXACT
+from warp_kernels.device.phase import Phase
 from warp_kernels.energy.triangle_walk import columns_of, step_down, walk_triangle
 from warp_kernels.energy.workspace import Workspace
 

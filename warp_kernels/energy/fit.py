@@ -12,8 +12,9 @@ from typing import Any
 import warp as wp
 
 from warp_kernels.color_model import SQUARE
-from warp_kernels.device.device import Device, Phase
+from warp_kernels.device.device import Device
 from warp_kernels.device.exact import EXACT
+from warp_kernels.device.phase import Phase
 from warp_kernels.energy.normal_equations import centring, factorising, shifts
 from warp_kernels.moments.moment_layout import MomentLayout, moment_types
 from warp_kernels.moments.triangle_sides import side_sums

@@ -2,8 +2,9 @@
 
 import warp as wp
 
-from warp_kernels.device.device import Device, Phase
+from warp_kernels.device.device import Device
 from warp_kernels.device.exact import EXACT
+from warp_kernels.device.phase import Phase
 from warp_kernels.moments.due import MOVED
 from warp_kernels.raster import SUBPIXELS, to_fixed
 

@@ -11,8 +11,9 @@ import numpy as np
 import warp as wp
 
 from warp_kernels.color_model import CHANNELS, ColorModel
-from warp_kernels.device.device import Phase
 from warp_kernels.device.exact import EXACT
+from warp_kernels.device.phase import Phase
+from warp_kernels.device.staging import ArrayRows
 from warp_kernels.energy.triangle_walk import columns_of, step_down, walk_triangle
 from warp_kernels.energy.workspace import Workspace
 
@@ -312,7 +313,9 @@ class Nearby:
         phase = self._recorded[place]
         phase.resize(len(energies))
         device.run([phase])
-        return Departures(*(device.read(array, len(energies)) for array in self._found))
+        return Departures(
+            *device.read_all([ArrayRows(array, len(energies)) for array in self._found])
+        )
 
     def _allocate(self) -> None:
         """Take memory for as many triangles as the workspace has room for."""

@@ -6,8 +6,9 @@ from typing import Any
 
 import warp as wp
 
-from warp_kernels.device.device import Device, Phase
+from warp_kernels.device.device import Device
 from warp_kernels.device.exact import EXACT
+from warp_kernels.device.phase import Phase
 from warp_kernels.energy.gradient_descent import smallest_height
 from warp_kernels.energy.topology_inputs import ground_type
 from warp_kernels.energy.triangle_energy import line_sums

@@ -9,8 +9,9 @@ from typing import Any
 
 import warp as wp
 
-from warp_kernels.device.device import Device, Phase
+from warp_kernels.device.device import Device
 from warp_kernels.device.exact import EXACT
+from warp_kernels.device.phase import Phase
 from warp_kernels.energy.fit import fit_moments
 from warp_kernels.moments.due import triangle_is_due
 from warp_kernels.moments.moment_layout import MomentLayout, moment_types

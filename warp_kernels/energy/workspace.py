@@ -10,7 +10,9 @@ import numpy as np
 import warp as wp
 
 from warp_kernels.color_model import ColorModel
-from warp_kernels.device.device import Device, Phase
+from warp_kernels.device.device import Device
+from warp_kernels.device.phase import Phase
+from warp_kernels.device.staging import ArrayRows
 from warp_kernels.energy.fit import record_fit
 from warp_kernels.energy.freedom import Freedom
 from warp_kernels.energy.gradient_descent import record_descent
@@ -19,7 +21,7 @@ from warp_kernels.moments.edge_moments import record_edge_moments
 from warp_kernels.moments.fragments import record_fragment_moments
 from warp_kernels.moments.moment_layout import layout_of_moments, moment_types
 from warp_kernels.moments.pixel_moments import check_size
-from warp_kernels.moments.pixel_weights import reduced_weights
+from warp_kernels.moments.pixel_weights import write_weights
 from warp_kernels.moments.prefix_tables import record_image_tables, table_length
 from warp_kernels.moments.variants import EDGE_VERSIONS, TRIANGLE_VARIANTS
 from warp_kernels.raster import SUBPIXELS
@@ -64,7 +66,7 @@ class Workspace:
         self.pixels = self._empty((height, width), wp.vec3ub)
         self._weights = self._empty((height, width) if self.layout.wide else (1, 1), wp.uint8)
         self.gauge = self._empty(1, wp.vec3d)
-        self._load_weights(None)
+        write_weights(device, None, size, weights_out=self._weights, gauge_out=self.gauge)
         self.table = self._empty(table_length(width, height, self.layout), types.entry)
         self._controls, self._probe = self._empty(3, wp.float64), self._empty(1, wp.int32)
         self._displacement = 0.0
@@ -78,13 +80,13 @@ class Workspace:
         self.placed: object = None
         """The mesh that lies here, as its owner knows it, over the picture at hand."""
         self._held = self._fitted = False
+        self._seen: list[np.ndarray] | None = None
         self._allocate(vertices=512, triangles=1024)
 
     def load_image(self, pixels: np.ndarray, weights: np.ndarray | None = None) -> None:
         """Take in a picture and build its prefix tables.
 
-        Only the ratios of weights matter: they are divided by their greatest common divisor, so
-        weights that are all equal give the bits that no weights give.
+        Only ratios of weights matter; all equal ones give the bits that no weights give.
 
         Args:
             pixels: Code values, [H, W, 3] uint8.
@@ -100,19 +102,12 @@ class Workspace:
         self._fitted = False
         self.device.write(self.pixels, pixels)
         if self.weighted:
-            self._load_weights(weights)
+            write_weights(
+                self.device, weights, self.size, weights_out=self._weights, gauge_out=self.gauge
+            )
         elif weights is not None:
             raise ValueError("this workspace takes no weights; make it with weighted=True")
         self.device.run([self._tables])
-
-    def _load_weights(self, weights: np.ndarray | None) -> None:
-        """Write weights without a common divisor, and the scale of the energies they lead to."""
-        width, height = self.size
-        reduced, mean = np.ones(self._weights.shape, dtype=np.uint8), 1.0
-        if weights is not None:
-            reduced, mean = reduced_weights(weights, self.size)
-        self.device.write(self._weights, reduced)
-        self.device.write(self.gauge, np.array([[1.0 / mean, width // 2, height // 2]]))
 
     def load_mesh(
         self,
@@ -136,18 +131,16 @@ class Workspace:
             fan_corners: Corners 3 t + c by vertex, [3 T].
             freedom: 1 where a coordinate may change, else 0, [V, 2].
         """
-        self.placed, self._held, self._fitted = None, False, False
+        self.placed, self._seen, self._held, self._fitted = None, None, False, False
         self._counts, self._front = (len(vertices), len(triangles), len(edges)), 0
         self._grow()
-        for array, values in (
-            (self._vertices[0], vertices),
-            (self.triangles, triangles),
-            (self._edges, edges),
-            (self.sides, sides),
-            (self._fan_offsets, fan_offsets),
-            (self._fan_corners, fan_corners),
-        ):
-            self.device.write(array, values)
+        write = self.device.write
+        write(self._vertices[0], vertices)
+        write(self.triangles, triangles)
+        write(self._edges, edges)
+        write(self.sides, sides)
+        write(self._fan_offsets, fan_offsets)
+        write(self._fan_corners, fan_corners)
         self._freedom.load(freedom)
         self._resize()
 
@@ -184,12 +177,11 @@ class Workspace:
         """
         if not self._held:
             raise ValueError("a mesh was placed and not held; see `hold`")
-        self.placed, self._fitted = None, False
+        self.placed, self._fitted, self._seen = None, False, None
         self._displace(displacement)
         self.device.write(self._controls, np.array([trust, regularity, dead_band]))
-        there, back = (
-            [self._moments[front], self._energy, self._descents[front]] for front in (0, 1)
-        )
+        steps = zip(self._moments, self._descents, strict=True)
+        there, back = ([moments, self._energy, descent] for moments, descent in steps)
         if times and self._front == 1:
             self.device.run(back)
             self._front, times = 0, times - 1
@@ -205,18 +197,26 @@ class Workspace:
 
     def vertices(self) -> np.ndarray:
         """Positions as they stand now [px], [V, 2] float64."""
-        return self.device.read(self.standing, self._counts[0])
+        return self._looked()[0]
 
     def energies(self) -> np.ndarray:
         """E of all thirteen variants of every triangle as it stands, 1 px apart, [T, 13]."""
         self._displace(DISPLACEMENT)
         self._freedom.know_all()
         self.device.run([self._moments[self._front], self._energy])
+        self._seen = None
         return self.device.read(self._energies, self._counts[1])
 
     def last_energy(self) -> float:
         """Energy of the mesh before the last step of `iterate` [code value^2 px], if none rests."""
-        return float(self.device.read(self._energies, self._counts[1])[:, 0].sum())
+        return float(self._looked()[1].sum())
+
+    def _looked(self) -> list[np.ndarray]:
+        """Vertices and energies, read at once: a second copy takes a card as long as the first."""
+        if self._seen is None:
+            wanted = ArrayRows(self._energies, self._counts[1], column=0)
+            self._seen = self.device.read_all([ArrayRows(self.standing, self._counts[0]), wanted])
+        return self._seen
 
     def moments(self) -> tuple[np.ndarray, np.ndarray]:
         """Colour and area sums as they stand: [E, ., 9] with edges, [T, 13, .] with fragments.
@@ -227,8 +227,9 @@ class Workspace:
         self._freedom.know_all()
         self.device.run([self._moments[self._front]])
         count = self._counts[2 if self.sums == "edges" else 1]
-        color, area = (self.device.read(s, count) for s in (self._color_sums, self._area_sums))
-        return color.view(np.int64), area.view(np.int64)
+        sums = (self._color_sums, self._area_sums)
+        read = self.device.read_all([ArrayRows(array, count) for array in sums])
+        return read[0].view(np.int64), read[1].view(np.int64)
 
     def fit(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Best colours of the mesh as it stands; asked for again they are only read.
@@ -240,8 +241,8 @@ class Workspace:
         if not self._fitted:
             self.device.run([self._fit_sums[self._front], self._fit])
             self._fitted = True
-        fitted = (self._coefficients, self.fit_energies, self._fit_counts)
-        coefficients, energies, counts = (self.device.read(a, self._counts[1]) for a in fitted)
+        fitted, T = (self._coefficients, self.fit_energies, self._fit_counts), self._counts[1]
+        coefficients, energies, counts = self.device.read_all([ArrayRows(a, T) for a in fitted])
         return coefficients, energies, counts
 
     def _displace(self, displacement: float) -> None:

@@ -11,8 +11,9 @@ from typing import Any
 
 import warp as wp
 
-from warp_kernels.device.device import Device, Phase
+from warp_kernels.device.device import Device
 from warp_kernels.device.exact import EXACT
+from warp_kernels.device.phase import Phase
 from warp_kernels.moments.due import edge_is_due
 from warp_kernels.moments.edge_walk import row_walker
 from warp_kernels.moments.line_moments import line_moments

@@ -8,8 +8,9 @@ from typing import Any
 
 import warp as wp
 
-from warp_kernels.device.device import Device, Phase
+from warp_kernels.device.device import Device
 from warp_kernels.device.exact import EXACT
+from warp_kernels.device.phase import Phase
 from warp_kernels.moments.moment_layout import MomentLayout, moment_types
 from warp_kernels.moments.pixel_moments import area_sums_of_pixel, color_sums_of_pixel
 from warp_kernels.moments.variants import TRIANGLE_VARIANTS, displacement

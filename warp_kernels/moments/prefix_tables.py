@@ -14,8 +14,9 @@ from typing import Any
 import warp as wp
 
 from warp_kernels.color_model import SQUARE
-from warp_kernels.device.device import Device, Phase
+from warp_kernels.device.device import Device
 from warp_kernels.device.exact import EXACT
+from warp_kernels.device.phase import Phase
 from warp_kernels.moments.moment_layout import ENTRY, MomentLayout, moment_types
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})

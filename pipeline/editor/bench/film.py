@@ -17,7 +17,7 @@ from warp_kernels.color_model import ColorModel
 from warp_kernels.errors import TrackError
 
 
-class Film:
+class SolvedFilm:
     """A track, as it is now.
 
     Args:

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from pipeline.editor.bench.film import Film
+from pipeline.editor.bench.film import SolvedFilm
 from pipeline.look.region_masks import own_mask
 from pipeline.look.region_members import MEMBER
 from pipeline.options.look import Look
@@ -22,7 +22,7 @@ class Members:
         options: How they were solved.
     """
 
-    def __init__(self, film: Film, options: SolveOptions) -> None:
+    def __init__(self, film: SolvedFilm, options: SolveOptions) -> None:
         self._film, self._options = film, options
         self._known: dict[Region, dict[int, np.ndarray]] = {}
 

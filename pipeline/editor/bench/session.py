@@ -1,7 +1,7 @@
 """One track being edited: what any frame is now, and every change to it."""
 
 from collections import OrderedDict
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
@@ -12,7 +12,8 @@ import numpy as np
 from pipeline.edit_log.journal import EditJournal
 from pipeline.edit_log.painted_regions import check_style, painted_regions
 from pipeline.editor.bench.easel import Easel
-from pipeline.editor.bench.film import Film
+from pipeline.editor.bench.film import SolvedFilm
+from pipeline.editor.bench.live import Descent, Live
 from pipeline.editor.bench.members import Members
 from pipeline.editor.bench.pictures import Pictures
 from pipeline.editor.bench.replays import Replays
@@ -32,7 +33,7 @@ from warp_kernels.errors import EditError, OutputError
 
 ANYWHERE = Run()
 """Any device, all cores."""
-EDITED, SOLVED, BEFORE = "edited", "solved", "before"
+EDITED, SOLVED, BEFORE, LIVE = "edited", "solved", "before", "live"
 VIEWS = (EDITED, SOLVED, BEFORE)
 """A frame with the edits just made, as the film has it, as it was before any edit."""
 MOST_FRAMES = 24
@@ -41,7 +42,7 @@ MOST_FITTED = 8
 """Meshes whose colours are kept."""
 
 
-class Ground(Enum):
+class Basis(Enum):
     """On what a frame's edits are made."""
 
     FILM = "the track's frame"
@@ -77,12 +78,14 @@ class Session:
     ) -> None:
         self.path, self.options, self.run = track, options, run
         self._journal = EditJournal(track)
-        self.film = Film(track)
+        self.film = SolvedFilm(track)
         self.info = self.film.info
         self._pictures = Pictures(options, self.film.frames[-1])
         self._members = Members(self.film, options)
+        self._device = device
+        self.live: Live | None = None
         self.easel = Easel(device, options, (self.info.width, self.info.height))
-        self._replays: OrderedDict[tuple[int, Ground], Replays] = OrderedDict()
+        self._replays: OrderedDict[tuple[int, Basis], Replays] = OrderedDict()
         self._fitted: OrderedDict[tuple[int, str], tuple[Worked, Snapshot]] = OrderedDict()
 
     @property
@@ -127,12 +130,12 @@ class Session:
         edits = [edit for edit in self._journal.log.edits if edit.frame == frame]
         solved = [edit for edit in self.film.solved_with.edits if edit.frame == frame]
         if not solved:
-            return self._replayed(frame, edits, Ground.FILM)
+            return self._replayed(frame, edits, Basis.FILM)
         if self.film.has_ground:
-            return self._replayed(frame, edits, Ground.KEPT)
+            return self._replayed(frame, edits, Basis.KEPT)
         if edits[: len(solved)] == solved:  # the track's frame has them in it
-            return self._replayed(frame, edits[len(solved) :], Ground.FILM)
-        return self._replayed(frame, edits, Ground.ANEW)
+            return self._replayed(frame, edits[len(solved) :], Basis.FILM)
+        return self._replayed(frame, edits, Basis.ANEW)
 
     def shown(self, frame: int, model: ColorModel | None = None, view: str = EDITED) -> Snapshot:
         """A frame's mesh, with colours.
@@ -177,9 +180,13 @@ class Session:
             EditError: If the track holds no such frame.
         """
         look = painted_regions(self.log, self.film.frames).over(look)
-        snapshot = self.shown(frame, look.fitted(self.easel.model), view)
+        model = look.fitted(self.easel.model)
+        if view == LIVE and self.live is not None and self.live.frame.index == frame:
+            snapshot = self.easel.fitted(self.live.frame, self.live.worked, model)
+        else:
+            snapshot = self.shown(frame, model, EDITED if view == LIVE else view)
         picture = self.picture(frame) if look.needs_source else None
-        shares = self._members.shares(look, frame, snapshot, is_edited=view == EDITED)
+        shares = self._members.shares(look, frame, snapshot, is_edited=view in (EDITED, LIVE))
         return self.easel.drawn(snapshot, picture, look, self.film.time(frame), shares)
 
     def thumbnail(self, frame: int) -> np.ndarray:
@@ -206,6 +213,7 @@ class Session:
             before = worked.get(edit.frame) or self.worked(edit.frame)
             worked[edit.frame] = edit.apply(before)
             check_style(edit)
+        self.live = None
         return self._journal.append(edits, after)
 
     def ghost(self, edit: Edit) -> Ghost:
@@ -220,12 +228,32 @@ class Session:
         is_gone = ~np.isin(before.vertex_ids, after.vertex_ids)
         return Ghost(after.vertices[is_fresh], before.vertices[is_gone])
 
+    def optimise(self, frame: int, given: Mapping[str, float]) -> Live:
+        """Take one step of the optimiser, from the frame with its edits on.
+
+        Args:
+            frame: Number of the frame.
+            given: See `Descent.of`.
+
+        Raises:
+            EditError: If the track holds no such frame.
+            OptionError: If a value is impossible.
+        """
+        course = Descent.of(self.options, given)
+        if self.live is None or self.live.frame.index != frame:
+            worked, picture = self.worked(frame), self.picture(frame)
+            self.live = Live(self._device, self.options, picture, worked)
+        self.live.step(course)
+        return self.live
+
     def undo(self) -> Edit | None:
         """Put the last edit out of force; None if there is none."""
+        self.live = None
         return self._journal.undo()
 
     def redo(self) -> Edit | None:
         """Put an edit in force again; None if there is none."""
+        self.live = None
         return self._journal.redo()
 
     def close(self) -> None:
@@ -254,8 +282,9 @@ class Session:
     def renewed(self) -> None:
         """Frames of the track were replaced."""
         self.film.close()
-        self.film = Film(self.path)
+        self.film = SolvedFilm(self.path)
         self._members = Members(self.film, self.options)
+        self.live = None
         self._replays.clear()
         self._fitted.clear()
 
@@ -264,7 +293,7 @@ class Session:
             first, last = self.film.frames[0], self.film.frames[-1]
             raise EditError(f"frame {frame}: the track holds frames {first} to {last}")
 
-    def _replayed(self, frame: int, edits: Sequence[Edit], ground: Ground) -> Worked:
+    def _replayed(self, frame: int, edits: Sequence[Edit], ground: Basis) -> Worked:
         """What edits make of a frame's ground.
 
         Args:
@@ -282,11 +311,11 @@ class Session:
 
     def _film_ground(self, frame: int) -> Worked | None:
         """A frame of the film as edits are made on it, if any were looked at."""
-        known = self._replays.get((frame, Ground.FILM))
+        known = self._replays.get((frame, Basis.FILM))
         return None if known is None else known.ground
 
-    def _ground(self, frame: int, ground: Ground) -> Worked:
-        if ground is Ground.ANEW:
+    def _ground(self, frame: int, ground: Basis) -> Worked:
+        if ground is Basis.ANEW:
             return Worked(self.easel.ground(self.picture(frame), self.film.model).mesh)
-        snapshot = self.film.snapshot(frame, before=ground is Ground.KEPT)
+        snapshot = self.film.snapshot(frame, before=ground is Basis.KEPT)
         return Worked(snapshot.mesh, snapshot.locks)

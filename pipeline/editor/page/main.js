@@ -85,6 +85,7 @@ function main() {
     show: (packed) => {
       if (packed.head.kind === "thumb") scrubber.show(packed);
       else stage.show(packed);
+      if (packed.head.kind === "mesh") optimiser.take(/** @type {any} */ (packed.head));
       if (packed.head.kind === "drawn") element("loading").hidden = true;
     },
     lost: () => {
@@ -110,6 +111,7 @@ function main() {
     stage.frame = isAgain ? stage.frame : facts.frames[0];
     Object.assign(stage, { frames: facts.frames, shots: facts.shots, rate: facts.rate, stem: facts.stem, track: facts.track });
     style.fill(facts.styles, facts.model === "constant" ? "flat" : "gradient");
+    optimiser.fill(facts.course);
     if (isAgain) await style.send();
     element("time").hidden = facts.frames.length < 2;
     element("strip").setAttribute("aria-valuemin", String(facts.frames[0]));
@@ -122,11 +124,17 @@ function main() {
   }
 
   fillRail(element("tools"), stage);
-  const { film, style } = fillPanel(element("panel"), stage);
+  const { film, style, optimiser } = fillPanel(element("panel"), stage);
   const scrubber = new Scrubber(element("strip"), stage);
   fillHelp(element("keys"));
   new Pointer(stage);
   new Keyboard(stage, element("keys"));
+  addEventListener("keydown", (event) => {
+    const isText = event.target instanceof HTMLInputElement && event.target.type === "text";
+    if (isText || event.ctrlKey || event.metaKey) return;
+    if (event.key === "l") optimiser.toggle();
+    if (event.key === ";") optimiser.ask("step");
+  });
   addEventListener("keydown", (event) => event.ctrlKey && event.key === "Enter" && film.begin());
   element("play").addEventListener("click", () => stage.togglePlay());
   for (const button of /** @type {NodeListOf<HTMLButtonElement>} */ (document.querySelectorAll("#views button"))) {

@@ -11,7 +11,7 @@ import { Painter } from "./view/painter.js";
  * @typedef {{radius: number, count: number, spread: string}} Brush
  * @typedef {{number: number, edits: number, edited: number[], pending: number[], canUndo: boolean,
  *   canRedo: boolean, hasGround: boolean}} State
- * @typedef {"edited" | "solved" | "before"} View
+ * @typedef {"edited" | "solved" | "before" | "live"} View
  */
 
 /** How long the pointer rests before the brush shows what it would do [ms]. */
@@ -40,7 +40,7 @@ export class Stage {
     this.tool = "edit";
     /** @type {"all" | "vertex" | "edge" | "face"} */
     this.mode = "all";
-    this.opacities = { picture: 1, drawn: 1, mesh: 0.6 };
+    this.opacities = { picture: 1, drawn: 1, errors: 0, mesh: 0.6 };
     this.hiddenMesh = 0.6;
     /** @type {Brush} */
     this.brush = { radius: 40, count: 10, spread: "uniform" };
@@ -118,7 +118,7 @@ export class Stage {
   }
 
   /**
-   * @param {"picture" | "drawn" | "mesh"} layer
+   * @param {"picture" | "drawn" | "errors" | "mesh"} layer
    * @param {number} value
    */
   setOpacity(layer, value) {
@@ -149,6 +149,7 @@ export class Stage {
   /** @param {import("./net/packed.js").Packed} packed */
   show(packed) {
     if (packed.head.frame !== this.frame) return;
+    if (packed.head.view === "live" && this.view !== "live") return; // a step that came too late
     if (packed.head.kind === "mesh") {
       this.mesh = new Mesh(packed);
       this.painter.setMesh(this.mesh);
@@ -169,6 +170,7 @@ export class Stage {
    */
   async seek(frame) {
     this.frame = frame;
+    if (this.view === "live") this.view = "edited";
     this.letGo();
     this.changed();
     this.isLookWanted = true;

@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 Reply = dict[str, Any]
 MOST_EDITS = 1_000
 """Edits of one message."""
+MOST_STEPS = 1_000_000
+"""Steps that the optimiser takes while nobody stops it."""
 MOST_STYLES = 16
 """Styles over one another."""
 
@@ -38,6 +40,7 @@ async def look_at(window: "Window", asked: Asked) -> Reply:
         raise AskError(f"look: it needs view, one of {', '.join(VIEWS)}")
     if frame not in window.studio.session.film:
         await window.studio.do(window.studio.session.picture, frame)  # says what is there
+    window.optimise({}, steps=0)
     window.frame, window.view = frame, view
     shows = {
         "picture": window.show_picture,
@@ -89,6 +92,17 @@ async def export(window: "Window", asked: Asked) -> Reply:
     output = beside(session.path, asked.text("name"))
     await window.studio.do(session.export, window.frame, window.look, output, window.view)
     return {"path": str(output)}
+
+
+async def optimise(window: "Window", asked: Asked) -> Reply:
+    """Take steps of the optimiser, or let it rest."""
+    names = ("triangles", "error", "regularity", "trust_region")
+    course = {name: asked.real(name) for name in names if name in asked.values}
+    what = asked.text("do")
+    if what == "begin":
+        window.studio.session.live = None
+    window.optimise(course, steps={"step": 1, "play": MOST_STEPS}.get(what, 0))
+    return {}
 
 
 async def style(window: "Window", asked: Asked) -> Reply:
@@ -165,6 +179,7 @@ ANSWERS: dict[str, Callable[["Window", Asked], Awaitable[Reply]]] = {
     "render": render_film,
     "cancel": cancel,
     "export": export,
+    "optimise": optimise,
     "style": style,
     "edit": edit,
     "ghost": ghost,

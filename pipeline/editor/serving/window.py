@@ -9,13 +9,13 @@ from typing import Any
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from pipeline.editor.bench.easel import look_of
-from pipeline.editor.bench.session import EDITED
+from pipeline.editor.bench.session import EDITED, LIVE
 from pipeline.editor.serving.answers import ANSWERS
 from pipeline.editor.serving.guard import shown
 from pipeline.editor.serving.pace import Pace
 from pipeline.editor.serving.studio import Studio
 from pipeline.editor.wire.asked import Asked, AskError, read_asked
-from pipeline.editor.wire.packed import packed_mesh, packed_pixels
+from pipeline.editor.wire.packed import packed_mesh, packed_pixels, packed_work
 from pipeline.options.look import Look
 from warp_kernels.errors import TrimotionError
 
@@ -41,6 +41,10 @@ class Window:
         self._pictures: dict[str, bytes] = {}  # the newest of each kind: who is slow misses some
         self._news = asyncio.Event()
         self._undrawn = asyncio.Event()
+        self._course: Mapping[str, float] = {}
+        self._steps = 0
+        self._running = asyncio.Event()
+        self._is_drawn = True
         self._pace = Pace()
 
     async def run(self) -> None:
@@ -50,7 +54,7 @@ class Window:
             await self._socket.close(TRY_LATER, "too many windows are open; close one")
             return
         self.studio.enter(self)
-        beside = [asyncio.create_task(one) for one in (self._send(), self._draw())]
+        beside = [asyncio.create_task(one) for one in (self._send(), self._draw(), self._live())]
         try:
             await self._listen()
         except WebSocketDisconnect as gone:
@@ -84,7 +88,8 @@ class Window:
 
     async def show_mesh(self) -> None:
         """Show the mesh of the frame."""
-        self.show("mesh", await self.studio.do(self._mesh, self.frame, self.view))
+        view = EDITED if self.view == LIVE else self.view
+        self.show("mesh", await self.studio.do(self._mesh, self.frame, view))
 
     def want_drawn(self) -> None:
         """Have the frame drawn, soon: of what is asked for meanwhile the last counts."""
@@ -95,6 +100,41 @@ class Window:
         frame = self.frame
         drawn = await self.studio.do(self.studio.session.drawn, frame, self.look, self.view)
         self.show("drawn", packed_pixels({"kind": "drawn", "frame": frame}, drawn))
+
+    def optimise(self, course: Mapping[str, float], steps: int) -> None:
+        """Have the optimiser take steps, each shown; what it was to do before is over.
+
+        Args:
+            course: See `Descent.of`.
+            steps: How many; 0 to let it rest.
+        """
+        self._course, self._steps = course, steps
+        self.view = LIVE if steps else self.view
+        self._running.set()
+
+    async def _live(self) -> None:
+        """Take steps while there are any to take."""
+        while True:
+            await self._running.wait()
+            self._running.clear()
+            while self._steps > 0:
+                self._steps -= 1
+                try:
+                    self.show("mesh", await self.studio.do(self._step, self.frame, self._course))
+                except TrimotionError as error:
+                    self._steps = 0
+                    self.tell({"tell": "problem", "text": str(error)})
+                    break
+                if self._steps == 0 or self._is_drawn:
+                    self._is_drawn = False
+                    self.want_drawn()
+                while "mesh" in self._pictures:  # no step is taken before the last one is shown
+                    await asyncio.sleep(0.002)
+
+    def _step(self, frame: int, course: Mapping[str, float]) -> bytes:
+        live = self.studio.session.optimise(frame, course)
+        head = {"frame": frame, "view": LIVE, "steps": live.steps, "rmse": live.rmse}
+        return packed_work(head, live.worked, live.energies, live.colors)
 
     def _mesh(self, frame: int, view: str) -> bytes:
         session = self.studio.session
@@ -108,6 +148,7 @@ class Window:
             self._undrawn.clear()
             try:
                 await self.show_drawn()
+                self._is_drawn = True
             except TrimotionError as error:
                 self.tell({"tell": "problem", "text": str(error)})
 

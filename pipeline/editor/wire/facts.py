@@ -31,6 +31,18 @@ def facts_of(session: Session) -> dict[str, Any]:
         "rate": None if info.average_rate is None else float(info.average_rate),
         "model": session.easel.model.name,
         "styles": style_facts(),
+        "course": _course(session),
+    }
+
+
+def _course(session: Session) -> dict[str, float]:
+    """What the optimiser aimed at when the clip was solved."""
+    solved = session.options.triangulate
+    return {
+        "triangles": solved.refine.triangles,
+        "error": solved.refine.error or 0.0,
+        "regularity": solved.optimize.regularity,
+        "trust_region": solved.optimize.trust_region,
     }
 
 

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from stages.hand.worked import Worked
 from stages.look.paint import paint_of
 from stages.snapshot import Snapshot
 
@@ -42,11 +43,26 @@ def packed_mesh(head: Mapping[str, Any], snapshot: Snapshot) -> bytes:
         head: What it is about; `kind` and sizes are added.
         snapshot: The mesh.
     """
-    mesh, locks = snapshot.mesh, snapshot.locks
+    worked = Worked(snapshot.mesh, snapshot.locks)
+    facts = {**head, "rmse": snapshot.rmse}
+    return packed_work(facts, worked, snapshot.energies, paint_of(snapshot).colors)
+
+
+def packed_work(
+    head: Mapping[str, Any], worked: Worked, energies: np.ndarray, colors: np.ndarray
+) -> bytes:
+    """A mesh that is being worked on.
+
+    Args:
+        head: What it is about; `kind` and sizes are added.
+        worked: The mesh, and what of it is held.
+        energies: E(T) [code value^2 px], [T].
+        colors: Colours of the triangles [code values], [T, 3].
+    """
+    mesh, locks = worked.mesh, worked.locks
     held = locks.held(mesh)
     edges = mesh.edge_half_edges[held.edges[mesh.edge_half_edges]]
-    colors = np.clip(np.rint(paint_of(snapshot).colors), 0, 255)
-    facts = {"kind": "mesh", "width": mesh.width, "height": mesh.height, "rmse": snapshot.rmse}
+    facts = {"kind": "mesh", "width": mesh.width, "height": mesh.height}
     return pack(
         {**head, **facts},
         {
@@ -56,8 +72,8 @@ def packed_mesh(head: Mapping[str, Any], snapshot: Snapshot) -> bytes:
             "held": ("u1", held.vertices),
             "heldEdges": ("u4", edges),
             "bare": ("u1", np.isin(mesh.triangle_ids, locks.bare)),
-            "colors": ("u1", colors),
-            "energies": ("f4", snapshot.energies / np.maximum(mesh.areas, 1e-9)),
+            "colors": ("u1", np.clip(np.rint(colors), 0, 255)),
+            "energies": ("f4", energies / np.maximum(mesh.areas, 1e-9)),
         },
     )
 

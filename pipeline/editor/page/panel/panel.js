@@ -1,5 +1,6 @@
 import { FilmPanel } from "../time/film.js";
 import { StylePanel } from "./style.js";
+import { OptimiserPanel } from "./optimiser.js";
 import { choice, help, section, slider } from "./rows.js";
 
 /** @typedef {import("../stage.js").Stage} Stage */
@@ -12,10 +13,11 @@ const percent = (value) => `${Math.round(100 * value)} %`;
  * @param {Stage} stage
  */
 function viewSection(stage) {
-  /** @type {["picture" | "drawn" | "mesh", string, string][]} */
+  /** @type {["picture" | "drawn" | "errors" | "mesh", string, string][]} */
   const layers = [
     ["picture", "Picture", "The frame of the source"],
     ["drawn", "Style", "The frame as the film will show it"],
+    ["errors", "Errors", "Where triangles differ from the picture: dark little, bright much"],
     ["mesh", "Mesh", "Edges and vertices; what is pinned is yellow (Tab)"],
   ];
   const rows = layers.map(([name, label, title]) => {
@@ -74,6 +76,7 @@ export function fillPanel(panel, stage) {
   const film = new FilmPanel(stage);
   const style = new StylePanel(stage);
   const brush = brushSection(stage, style);
-  panel.append(film.element, viewSection(stage), style.element, brush, commandSection(stage));
-  return { film, style };
+  const optimiser = new OptimiserPanel(stage);
+  panel.append(film.element, viewSection(stage), style.element, brush, optimiser.element, commandSection(stage));
+  return { film, style, optimiser };
 }

@@ -14,6 +14,7 @@ export class Player {
     const { stage } = this;
     if (stage.frames.length < 2 || this.isOn) return;
     this.isOn = true;
+    if (stage.view === "live") stage.view = "edited";
     stage.changed();
     const rate = stage.rate ?? USUAL;
     const start = stage.frames.indexOf(stage.frame);

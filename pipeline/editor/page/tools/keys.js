@@ -30,6 +30,8 @@ export const HELP = [
   ["Time", [
     ["Space", "play and pause"],
     [", and .", "one frame back and on"],
+    ["L", "watch the optimiser, and pause it"],
+    [";", "one step of the optimiser"],
     ["Ctrl + Enter", "let the edits reach through their shot"],
   ]],
   ["View and history", [

@@ -1,10 +1,13 @@
-import { DOTS, LINES, PICTURE } from "./shaders.js";
+import { DOTS, ERRORS, LINES, PICTURE } from "./shaders.js";
 
 /**
  * @typedef {import("../mesh/mesh.js").Mesh} Mesh
- * @typedef {{picture: number, drawn: number, mesh: number}} Opacities
+ * @typedef {{picture: number, drawn: number, errors: number, mesh: number}} Opacities
  * @typedef {{program: WebGLProgram, at: (name: string) => WebGLUniformLocation | null}} Program
  */
+
+/** Root of the energy of a pixel that is shown brightest [code values]. */
+const MOST_ERROR = 60;
 
 /** Draws the layers of the stage with WebGL. */
 export class Painter {
@@ -17,14 +20,17 @@ export class Painter {
     this.pictures = program(gl, PICTURE);
     this.lines = program(gl, LINES);
     this.dots = program(gl, DOTS);
+    this.errors = program(gl, ERRORS);
     /** @type {Record<string, WebGLTexture>} */
     this.textures = {};
     this.edges = 0;
     this.vertices = 0;
     this.lineArray = gl.createVertexArray();
     this.dotArray = gl.createVertexArray();
+    this.errorArray = gl.createVertexArray();
+    this.corners = 0;
     this.empty = gl.createVertexArray();
-    this.buffers = { ends: gl.createBuffer(), held: gl.createBuffer(), at: gl.createBuffer(), heldAt: gl.createBuffer() };
+    this.buffers = { ends: gl.createBuffer(), held: gl.createBuffer(), at: gl.createBuffer(), heldAt: gl.createBuffer(), cornerAt: gl.createBuffer(), error: gl.createBuffer() };
     gl.enable(gl.BLEND);
     gl.blendFuncSeparate(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA, gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
   }
@@ -59,7 +65,21 @@ export class Painter {
     this.fill(this.lineArray, this.lines, { ends: [4, ends], held: [1, heldEdges] }, this.buffers);
     const at = { at: this.buffers.at, held: this.buffers.heldAt };
     const positions = Float32Array.from(mesh.vertices);
+    this.setErrors(mesh);
     this.fill(this.dotArray, this.dots, { at: [2, positions], held: [1, Float32Array.from(mesh.held)] }, at);
+  }
+
+  /** @param {Mesh} mesh */
+  setErrors(mesh) {
+    this.corners = mesh.triangles.length;
+    const at = new Float32Array(2 * this.corners);
+    const error = new Float32Array(this.corners);
+    for (let corner = 0; corner < this.corners; corner++) {
+      at.set(mesh.vertices.subarray(2 * mesh.triangles[corner], 2 * mesh.triangles[corner] + 2), 2 * corner);
+      error[corner] = Math.min(1, Math.sqrt(Math.max(0, mesh.energies[Math.floor(corner / 3)])) / MOST_ERROR);
+    }
+    const buffers = { at: this.buffers.cornerAt, error: this.buffers.error };
+    this.fill(this.errorArray, this.errors, { at: [2, at], error: [1, error] }, buffers, 0);
   }
 
   /**
@@ -67,8 +87,9 @@ export class Painter {
    * @param {Program} used
    * @param {Record<string, [number, Float32Array]>} values
    * @param {Record<string, WebGLBuffer | null>} buffers
+   * @param {number} [each] instances that share a value, 0 for a value for every vertex
    */
-  fill(array, used, values, buffers) {
+  fill(array, used, values, buffers, each = 1) {
     const { gl } = this;
     gl.bindVertexArray(array);
     for (const [name, [size, data]] of Object.entries(values)) {
@@ -77,7 +98,7 @@ export class Painter {
       gl.bufferData(gl.ARRAY_BUFFER, data, gl.DYNAMIC_DRAW);
       gl.enableVertexAttribArray(place);
       gl.vertexAttribPointer(place, size, gl.FLOAT, false, 0, 0);
-      gl.vertexAttribDivisor(place, 1);
+      gl.vertexAttribDivisor(place, each);
     }
     gl.bindVertexArray(null);
   }
@@ -100,6 +121,7 @@ export class Painter {
     for (const name of /** @type {const} */ (["picture", "drawn"])) {
       if (this.textures[name] && opacities[name] > 0) this.paintPicture(name, view, size, opacities[name]);
     }
+    if (opacities.errors > 0 && this.corners) this.paintErrors(view, opacities.errors);
     if (opacities.mesh > 0 && this.edges) this.paintMesh(view, scale, camera.zoom, opacities.mesh);
   }
 
@@ -117,6 +139,17 @@ export class Painter {
     gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, view[2] > 4 ? gl.NEAREST : gl.LINEAR);
     gl.bindVertexArray(this.empty);
     gl.drawArrays(gl.TRIANGLE_STRIP, 0, 4);
+  }
+
+  /**
+   * @param {number[]} view
+   * @param {number} opacity
+   */
+  paintErrors(view, opacity) {
+    const { gl } = this;
+    this.use(this.errors, view, opacity);
+    gl.bindVertexArray(this.errorArray);
+    gl.drawArrays(gl.TRIANGLES, 0, this.corners);
   }
 
   /**

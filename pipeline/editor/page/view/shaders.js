@@ -91,3 +91,25 @@ export const DOTS = {
       color = vec4(mix(vec3(0.08), hue, rim), cover * opacity);
     }`,
 };
+
+/** Triangles in the colours of their errors. */
+export const ERRORS = {
+  vertex: `#version 300 es
+    ${SCREEN}
+    in vec2 at;
+    in float error;
+    flat out float much;
+    void main() {
+      much = error;
+      gl_Position = shown(at * camera.z + camera.xy);
+    }`,
+  fragment: `#version 300 es
+    precision highp float;
+    uniform float opacity;
+    flat in float much;
+    out vec4 color;
+    void main() {
+      vec3 hot = vec3(smoothstep(0.0, 0.5, much), smoothstep(0.3, 0.85, much), smoothstep(0.75, 1.0, much));
+      color = vec4(hot + vec3(0.03, 0.02, 0.09) * (1.0 - much), opacity);
+    }`,
+};

@@ -1,0 +1,178 @@
+"""The emulated card and the CPU agree to the bit; run by `make cuda-check`, not with the suite."""
+
+from pathlib import Path
+from threading import Thread
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+import warp as wp
+
+from pipeline.loop.animate import animate
+from pipeline.progress import Progress
+from stages.media import open_decoder
+from stages.render import Renderer
+from stages.topology.refine_options import RefineOptions
+from stages.triangulate_options import TriangulateOptions
+from tests import media_samples as samples
+from tests.jobs import job_of
+from tests.kernel_samples import (
+    noise,
+    poisoned_workspace,
+    random_mesh,
+    random_weights,
+    snapshot_of,
+)
+from warp_kernels.color_model import COLOR_MODELS
+from warp_kernels.device.device import Device
+from warp_kernels.device.phase import Phase
+from warp_kernels.device.staging import ArrayRows
+from warp_kernels.energy.sums import SUMS
+from warp_kernels.energy.topology_survey import Survey
+from warp_kernels.energy.workspace import Workspace
+from warp_kernels.styles import STYLES
+
+SIZE = (61, 47)
+"""Of the pictures [px]."""
+FRAMES = 10
+INEXACT: dict[str, int] = {}
+"""Styles that may differ, by how many code values; none does here, where both libraries are one."""
+
+
+def on(device: str, model: str, sums: str, *, weighted: bool) -> Workspace:
+    """A mesh over noise."""
+    weights = random_weights(*SIZE) if weighted else None
+    mesh = random_mesh(*SIZE, 60)
+    kind = COLOR_MODELS[model]
+    return poisoned_workspace(Device(device, 1), noise(*SIZE), mesh, kind, sums, weights)
+
+
+def solved(workspace: Workspace) -> list[np.ndarray]:
+    """Everything that fifty iterations lead to."""
+    workspace.hold(np.zeros((len(workspace.vertices()), 3)))
+    workspace.iterate(50, trust=0.5, regularity=1e-3)
+    return [workspace.vertices(), workspace.energies(), *workspace.moments(), *workspace.fit()]
+
+
+@pytest.mark.parametrize("weighted", [False, True])
+@pytest.mark.parametrize("sums", SUMS)
+@pytest.mark.parametrize("model", COLOR_MODELS)
+def test_iterations(model: str, sums: str, weighted: bool, device: str) -> None:
+    """Fifty, and what is measured after them."""
+    results = [solved(on(name, model, sums, weighted=weighted)) for name in ("cpu", device)]
+    for expected, actual in zip(*results, strict=True):
+        np.testing.assert_array_equal(actual, expected)
+
+
+def gains(workspace: Workspace) -> list[Any]:
+    """What flips, collapses and splits of every edge of a mesh would gain."""
+    mesh = random_mesh(*SIZE, 60)
+    survey = Survey(workspace)
+    survey.load_topology(mesh.twins.ravel(), mesh.triangles.ravel())
+    chosen = np.flatnonzero(mesh.twins.ravel() >= 0)
+    measured = survey.flip_gains(chosen), survey.collapse_costs(chosen), survey.split_gains(chosen)
+    return [measured[0], measured[1], *measured[2]]
+
+
+@pytest.mark.parametrize("model", COLOR_MODELS)
+def test_gains(model: str, device: str) -> None:
+    """Of all edges within."""
+    results = [gains(on(name, model, "edges", weighted=False)) for name in ("cpu", device)]
+    for expected, actual in zip(*results, strict=True):
+        np.testing.assert_array_equal(actual, expected)
+
+
+def film(folder: Path, device: str, **look: Any) -> np.ndarray:
+    """Ten restless frames of 64 x 48, converted, [F, H, W, 3] uint8."""
+    pictures = [samples.picture(64, 48, 2 * number) for number in range(FRAMES)]
+    clip = samples.write_video(folder / "clip.mp4", pictures)
+    quick = TriangulateOptions(
+        iterations=40, frame_iterations=6, refine=RefineOptions(triangles=120)
+    )
+    output = folder / f"{device}.mkv"
+    job = job_of(clip, output, triangulate=quick, codec="ffv1", device=device, **look)
+    animate(job, Progress())
+    with open_decoder(output) as decoder:
+        return np.stack([frame.pixels for frame in decoder])
+
+
+@pytest.mark.parametrize("style", STYLES)
+def test_clips(style: str, device: str, tmp_path: Path) -> None:
+    """Solved and drawn, with triangles that fade in."""
+    look = {"styles": (STYLES["paper"](), STYLES[style](opacity=0.75)), "fade": 4}
+    expected, actual = (film(tmp_path, name, **look) for name in ("cpu", device))
+    off = np.abs(actual.astype(int) - expected).max()
+    assert off <= INEXACT.get(style, 0)
+
+
+def test_two_threads_share_a_card(device: str) -> None:
+    """One solves meshes that grow, so that it captures again and again, and the other draws."""
+    shared, errors = Device(device), []
+    mesh = random_mesh(*SIZE, 60)
+    snapshot = snapshot_of(shared, noise(*SIZE), mesh, COLOR_MODELS["linear"])
+    renderer = Renderer(shared, SIZE, SIZE, (STYLES["flat"](),))
+    expected = renderer.render(snapshot)
+
+    def draw() -> None:
+        """Draw the same again and again."""
+        try:
+            for _ in range(20):
+                np.testing.assert_array_equal(renderer.render(snapshot), expected)
+        except BaseException as error:
+            errors.append(error)
+
+    drawing = Thread(target=draw)
+    drawing.start()
+    for number in range(12):
+        grown = random_mesh(*SIZE, 20 + 20 * number)
+        workspace = poisoned_workspace(shared, noise(*SIZE), grown, COLOR_MODELS["constant"])
+        workspace.hold(np.zeros((grown.vertex_count, 3)))
+        workspace.iterate(3, trust=0.5, regularity=1e-3)
+        workspace.fit()
+    drawing.join()
+    assert not errors
+
+
+class Intruder:
+    """A launch during whose capture a copy is made."""
+
+    def __init__(self, device: Device) -> None:
+        self._device = device
+        self.bounds = SimpleNamespace(size=1)
+
+    def launch(self) -> None:
+        """Copy something instead."""
+        array = self._device.empty(4, int)
+        self._device.write(array, np.zeros(4))
+        self._device.read(array, 4)
+
+
+def test_a_copy_during_a_capture_is_found(device: str) -> None:
+    """By the emulated card, as by a real one."""
+    shared = Device(device)
+    phase = Phase([Intruder(shared)], lambda number, begin, end: None, 1, 1)
+    with pytest.raises(RuntimeError, match="captured"):
+        shared.run([phase])
+
+
+def test_staged_copies_keep_their_order(device: str) -> None:
+    """What is written last stands, whatever waits; columns and rows are read as they lie."""
+    card = Device(device)
+    first, second = card.empty((300, 13), wp.float64), card.empty(1000, wp.vec3i)
+    card.write(first, np.zeros((300, 13)))
+    card.write(first, np.ones((10, 13)))
+    card.write(first, np.full((5, 13), 2.0))
+    threes = np.arange(3000).reshape(1000, 3)
+    card.write(second, threes)
+    column, rows, some = card.read_all(
+        [ArrayRows(first, 20, column=4), ArrayRows(second, 1000), ArrayRows(first, 6)]
+    )
+    np.testing.assert_array_equal(column, [2.0] * 5 + [1.0] * 5 + [0.0] * 10)
+    np.testing.assert_array_equal(rows, threes)
+    np.testing.assert_array_equal(some[:, 12], [2.0] * 5 + [1.0])
+    large = card.empty((700, 700), wp.vec3ub)
+    picture = noise(700, 700)
+    card.write(large, picture)
+    np.testing.assert_array_equal(card.read(large, 700), picture)
+    assert len(card.read(second, 0)) == 0
