@@ -163,7 +163,9 @@ class Staging:
             self._pinned = wp.empty(room, dtype=wp.uint8, device="cpu", pinned=is_card)
             self._on_card = wp.empty(room, dtype=wp.uint8, device=self._device)
             self._seen: np.ndarray = self._pinned.numpy()
-            words = self._on_card.view(wp.int32)
+            words = wp.array(
+                ptr=self._on_card.ptr, shape=room // WORD, dtype=int, device=self._device
+            )
         self._scatter = self._launcher.record(scatter, [words, Table()])
         self._gather = self._launcher.record(gather, [Table(), words])
 
