@@ -28,6 +28,7 @@ from pipeline.loop.animate import animate
 from pipeline.progress import Progress
 from stages.media import open_decoder
 from stages.media.frame_range import FrameRange
+from stages.media.writing.encode_options import EncodeOptions
 from stages.optimize import load_mesh
 from stages.render import Renderer
 from tests.jobs import job_of
@@ -246,9 +247,8 @@ def clips(trial: Trial) -> dict[str, Any]:
             CLIP,
             output,
             frame_range=FrameRange(0, last),
-            codec="ffv1",
+            encode=EncodeOptions(codec="ffv1", overwrite=True),
             device=name,
-            overwrite=True,
         )
         begun = perf_counter()
         animate(job, Progress())

@@ -12,6 +12,7 @@ import warp as wp
 from pipeline.loop.animate import animate
 from pipeline.progress import Progress
 from stages.media import open_decoder
+from stages.media.writing.encode_options import EncodeOptions
 from stages.render import Renderer
 from stages.topology.refine_options import RefineOptions
 from stages.triangulate_options import TriangulateOptions
@@ -91,7 +92,9 @@ def film(folder: Path, device: str, **look: Any) -> np.ndarray:
         iterations=40, frame_iterations=6, refine=RefineOptions(triangles=120)
     )
     output = folder / f"{device}.mkv"
-    job = job_of(clip, output, triangulate=quick, codec="ffv1", device=device, **look)
+    job = job_of(
+        clip, output, triangulate=quick, encode=EncodeOptions(codec="ffv1"), device=device, **look
+    )
     animate(job, Progress())
     with open_decoder(output) as decoder:
         return np.stack([frame.pixels for frame in decoder])
@@ -100,7 +103,7 @@ def film(folder: Path, device: str, **look: Any) -> np.ndarray:
 @pytest.mark.parametrize("style", STYLES)
 def test_clips(style: str, device: str, tmp_path: Path) -> None:
     """Solved and drawn, with triangles that fade in."""
-    look = {"styles": (STYLES["paper"](), STYLES[style](opacity=0.75)), "fade": 4}
+    look = {"styles": (STYLES["paper"](), STYLES[style](opacity=0.75)), "blend": 4}
     expected, actual = (film(tmp_path, name, **look) for name in ("cpu", device))
     off = np.abs(actual.astype(int) - expected).max()
     assert off <= INEXACT.get(style, 0)
