@@ -111,9 +111,9 @@ def trimotion(*arguments: object) -> None:
 
 
 def red(path: Path) -> np.ndarray:
-    """Which pixels of a still are red, [H, W] bool."""
+    """Which pixels of a still are the red of the edges, purer than any in the clip, [H, W] bool."""
     picture = cv2.imread(str(path)).astype(int)
-    found: np.ndarray = (picture[..., 2] > 180) & (picture[..., :2].max(axis=2) < 60)
+    found: np.ndarray = (picture[..., 2] > 180) & (picture[..., :2].max(axis=2) < 40)
     return found
 
 
