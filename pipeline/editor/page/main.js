@@ -79,6 +79,7 @@ function main() {
     tell: (words) => {
       if (words.tell === "state") stage.setState(words);
       else if (words.tell === "problem") toast(words.text);
+      else if (words.tell === "preparing") element("preparing").hidden = !words.is;
       else film.tell(words);
       if (words.tell === "done") scrubber.renew();
     },
@@ -86,7 +87,7 @@ function main() {
       if (packed.head.kind === "thumb") scrubber.show(packed);
       else stage.show(packed);
       if (packed.head.kind === "mesh") optimiser.take(/** @type {any} */ (packed.head));
-      if (packed.head.kind === "drawn") element("loading").hidden = true;
+      if (packed.head.kind === "mesh") element("loading").hidden = true; // the drawn one may take a while
     },
     lost: () => {
       isLost = true;
