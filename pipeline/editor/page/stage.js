@@ -84,6 +84,7 @@ export class Stage {
     /** @type {((lines: string[]) => void)[]} */
     this.commandWatchers = [];
     this.isDirty = false;
+    this.painted = () => {};
     new ResizeObserver(() => this.fitOnce()).observe(canvas);
   }
 
@@ -152,7 +153,9 @@ export class Stage {
 
   /** @param {import("./net/packed.js").Packed} packed */
   show(packed) {
-    if (packed.head.frame !== this.frame) return;
+    const isNext = this.isPlaying && packed.head.kind === "drawn" && packed.head.frame !== this.frame;
+    if (isNext) this.frame = packed.head.frame;
+    if (packed.head.frame !== this.frame && !this.isPlaying) return;
     if (packed.head.view === "live" && this.view !== "live") return; // a step that came too late
     if (packed.head.kind === "mesh") {
       const before = this.mesh;
@@ -164,7 +167,8 @@ export class Stage {
     } else if (packed.head.kind === "picture" || packed.head.kind === "drawn") {
       this.painter.setPicture(packed.head.kind, packed);
     }
-    this.changed();
+    if (isNext) this.changed();
+    else this.repaint();
   }
 
   get isPlaying() {
@@ -245,6 +249,7 @@ export class Stage {
       this.isDirty = false;
       this.painter.paint(this.camera, this.size, this.opacities);
       this.overlay.paint(this.camera, this.mesh, this.shown());
+      this.painted();
     });
   }
 

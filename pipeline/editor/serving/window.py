@@ -5,6 +5,7 @@ import json
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import replace
+from time import monotonic
 from typing import Any
 
 from starlette.websockets import WebSocket, WebSocketDisconnect
@@ -24,6 +25,8 @@ from warp_kernels.errors import TrimotionError
 
 TOO_BIG, POLICY, TRY_LATER = 1009, 1008, 1013
 """Codes with which a connection is closed."""
+LULL = 4.0
+"""While the optimiser works, so much longer than drawing took nothing is drawn: it shall work."""
 
 
 class Window:
@@ -48,7 +51,7 @@ class Window:
         self._course: Mapping[str, float] = {}
         self._steps = 0
         self._running = asyncio.Event()
-        self._is_drawn = True
+        self._is_drawn, self._draws_at = True, 0.0
         self._pace = Pace()
 
     async def run(self) -> None:
@@ -142,7 +145,7 @@ class Window:
                     self._steps = 0
                     self.tell({"tell": "problem", "text": str(error)})
                     break
-                if self._steps == 0 or self._is_drawn:
+                if self._steps == 0 or (self._is_drawn and monotonic() >= self._draws_at):
                     self._is_drawn = False
                     self.want_drawn()
                 while "mesh" in self._pictures:  # no step is taken before the last one is shown
@@ -170,7 +173,9 @@ class Window:
             await self._undrawn.wait()
             self._undrawn.clear()
             try:
+                begun = monotonic()
                 await self.show_drawn()
+                self._draws_at = monotonic() + LULL * (monotonic() - begun)
                 self._is_drawn = True
             except TrimotionError as error:
                 self.tell({"tell": "problem", "text": str(error)})
