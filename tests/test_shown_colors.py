@@ -27,6 +27,7 @@ from stages.render import Renderer
 from stages.snapshot import Snapshot
 from stages.solve.color_limits import SLACK
 from stages.solve.color_owners import color_owners
+from stages.solve.grid import shades, value_range
 from stages.spaces import SPACES
 from stages.topology.appraise import Appraiser
 from stages.topology.collapse_slivers import collapse_slivers
@@ -279,7 +280,7 @@ def test_borders_show_no_third_colour(color: str, is_weighted: bool, device: str
     ]
     assert away[0] > 0
     assert away[1] < away[0]
-    assert (snapshot.energies >= energies - 1e-6).all()
+    assert (snapshot.energies >= energies * (1 - 1e-5) - 1e-6).all()
     shown = drawn(replace(snapshot, limits=None), style_of(snapshot.model), device)
     told = np.sqrt(np.square(shown - picture.astype(float)).mean())
     assert snapshot.rmse == pytest.approx(told, rel=0.02)
@@ -315,8 +316,11 @@ def test_polynomials_stay_within_their_pixels(model: ColorModel, device: str) ->
     limits = snapshot.limits[covering].astype(int)
     assert (limits[:, 0] >= extremes[covering, 0].astype(int) - SLACK).all()
     assert (limits[:, 1] <= extremes[covering, 1].astype(int) + SLACK).all()
-    assert (limits[:, 0] <= extremes[covering, 0]).all()
-    assert (limits[:, 1] >= extremes[covering, 1]).all()
+    # no pixel's colour is out of bounds, unless the polynomial does not reach it anyway
+    values = shades(mesh, model, snapshot.coefficients)
+    lowest, highest = (bound.T[covering] for bound in value_range(values))
+    assert (limits[:, 0] <= np.maximum(extremes[covering, 0], lowest)).all()
+    assert (limits[:, 1] >= np.minimum(extremes[covering, 1], highest)).all()
     errors = [
         np.square(drawn(s, Gradient(), device) - picture.astype(int)).mean()
         for s in (snapshot, replace(snapshot, limits=None))

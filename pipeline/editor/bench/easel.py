@@ -15,11 +15,13 @@ from pipeline.options.solve_options import SolveOptions
 from stages.frame import Frame
 from stages.hand.worked import Worked
 from stages.look.framing import framed
+from stages.masks.region import Region
 from stages.motion.advect import Carried
 from stages.snapshot import Snapshot
 from stages.triangulate import Triangulator
 from warp_kernels.color_model import ColorModel
 from warp_kernels.device.device import Device
+from warp_kernels.styles import Style
 
 MOST_ACROSS = 1920
 """Widest picture that is drawn for the page [px]."""
@@ -117,8 +119,8 @@ class Easel:
 
     def _wardrobe(self, size: tuple[int, int], look: Look) -> Wardrobe:
         """What draws a look; what draws looks with other styles is kept for a while."""
-        kinds = tuple(type(style) for style in (*look.styles, *(r.style for r in look.regions)))
-        key = size, look.followed, kinds
+        layers: tuple[Style | Region, ...] = (*look.styles, *look.regions)
+        key = size, look.followed, tuple(map(_kind_of, layers))
         if key not in self._wardrobes:
             made = Wardrobe(self._device, self._size, size, look, self.model)
             self._wardrobes[key] = made
@@ -139,6 +141,12 @@ class Easel:
                 self._options, self._size, self._device, model
             )
         return self._triangulators[model.name]
+
+
+def _kind_of(layer: Style | Region) -> tuple[object, ...]:
+    """What of a style, or a region's, has other memory: its numbers do not."""
+    style = layer.style if isinstance(layer, Region) else layer
+    return (type(style), *(getattr(style, name) for name in style.built_from))
 
 
 def look_of(styles: Sequence[str]) -> Look:

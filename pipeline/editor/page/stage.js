@@ -1,5 +1,6 @@
 import { Mesh } from "./mesh/mesh.js";
 import { pick } from "./mesh/pick.js";
+import { Marks } from "./tools/marks.js";
 import { editOf, planned } from "./tools/plans.js";
 import { Player } from "./time/player.js";
 import { Camera } from "./view/camera.js";
@@ -54,10 +55,10 @@ export class Stage {
     this.rate = null;
     this.stem = "frame";
     this.track = "";
-    this.paintStyle = "hatching";
     /** @type {View} */
     this.view = "edited";
     this.player = new Player(this);
+    this.marks = new Marks(this);
     this.isLooking = false;
     this.isLookWanted = false;
     /** @type {Mesh | null} */
@@ -359,10 +360,9 @@ export class Stage {
   click(button) {
     const picked = this.picked();
     if (!this.mesh || !this.pointer) return;
-    if (this.tool === "paint") {
-      const { x, y } = this.pointer;
-      this.make({ edit: "style_region", at: [x, y], radius: this.brush.radius, style: this.paintStyle });
-    } else if (this.tool === "brush") {
+    if (this.tool === "paint") this.marks.dab();
+    else if (this.tool === "region") this.marks.corner();
+    else if (this.tool === "brush") {
       this.make(this.stroke(this.pointer, button === "right" || this.shift));
     } else if (picked && this.tool === "pin") {
       const plan = button === "right" || this.isHeld(picked) ? "unlock" : "lock";
@@ -407,16 +407,6 @@ export class Stage {
   letGo() {
     this.moving = null;
     this.polygon = [];
-    this.repaint();
-  }
-
-  /** Triangulate the region that was drawn. */
-  closeRegion() {
-    const polygon = this.polygon.map(({ x, y }) => [x, y]);
-    this.polygon = [];
-    if (polygon.length > 2) {
-      this.make(/** @type {any} */ ({ edit: "retriangulate", polygon, count: this.brush.count, seed: this.state.number }));
-    }
     this.repaint();
   }
 }

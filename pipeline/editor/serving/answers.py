@@ -9,6 +9,7 @@ from pipeline.editor.bench.easel import look_of
 from pipeline.editor.bench.errands import beside
 from pipeline.editor.bench.long_work import Applying, Rendering
 from pipeline.editor.bench.session import VIEWS
+from pipeline.editor.bench.sketch import Sketch, drawing_of, keep_drawing
 from pipeline.editor.wire.asked import Asked, AskError
 from pipeline.editor.wire.packed import packed_pixels
 from stages.hand import Edit
@@ -116,6 +117,28 @@ async def style(window: "Window", asked: Asked) -> Reply:
     return {}
 
 
+async def sketch(window: "Window", asked: Asked) -> Reply:
+    """Show a texture on all triangles, as it is being drawn; without one, show none any more."""
+    drawing = drawing_of(asked.text("drawing")) if "drawing" in asked.values else b""
+    window.sketch = None
+    if drawing or "file" in asked.values:
+        window.sketch = Sketch(
+            file=asked.text("file", "drawing"),
+            strength=asked.real("strength", 1.0),
+            opacity=asked.real("opacity", 1.0),
+            drawing=drawing,
+        )
+    window.want_drawn()
+    return {}
+
+
+async def keep(window: "Window", asked: Asked) -> Reply:
+    """Write a texture that was drawn beside the track, for edits and styles to name."""
+    drawing = drawing_of(asked.text("drawing"))
+    track = window.studio.session.path
+    return {"file": str(await window.studio.do(keep_drawing, drawing, track))}
+
+
 async def edit(window: "Window", asked: Asked) -> Reply:
     """Make edits."""
     session = window.studio.session
@@ -181,6 +204,8 @@ ANSWERS: dict[str, Callable[["Window", Asked], Awaitable[Reply]]] = {
     "export": export,
     "optimise": optimise,
     "style": style,
+    "sketch": sketch,
+    "keep": keep,
     "edit": edit,
     "ghost": ghost,
     "commands": commands,

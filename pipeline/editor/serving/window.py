@@ -4,12 +4,14 @@ import asyncio
 import json
 from collections.abc import Mapping
 from contextlib import suppress
+from dataclasses import replace
 from typing import Any
 
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from pipeline.editor.bench.easel import look_of
 from pipeline.editor.bench.session import EDITED, LIVE
+from pipeline.editor.bench.sketch import Sketch
 from pipeline.editor.serving.answers import ANSWERS
 from pipeline.editor.serving.guard import shown
 from pipeline.editor.serving.pace import Pace
@@ -36,6 +38,7 @@ class Window:
         self.frame = studio.session.film.frames[0]
         self.look: Look = look_of(())
         self.styles: list[str] = []
+        self.sketch: Sketch | None = None
         self.view = EDITED
         self._words: list[str] = []
         self._pictures: dict[str, bytes] = {}  # the newest of each kind: who is slow misses some
@@ -97,8 +100,11 @@ class Window:
 
     async def show_drawn(self) -> None:
         """Show the frame as the film shows it."""
-        frame = self.frame
-        drawn = await self.studio.do(self.studio.session.drawn, frame, self.look, self.view)
+        frame, look = self.frame, self.look
+        if self.sketch is not None:
+            styles = look.shown_styles(self.studio.session.easel.model)
+            look = replace(look, styles=(*styles, self.sketch))
+        drawn = await self.studio.do(self.studio.session.drawn, frame, look, self.view)
         self.show("drawn", packed_pixels({"kind": "drawn", "frame": frame}, drawn))
 
     def optimise(self, course: Mapping[str, float], steps: int) -> None:

@@ -1,7 +1,9 @@
 import { FilmPanel } from "../time/film.js";
 import { StylePanel } from "./style.js";
 import { OptimiserPanel } from "./optimiser.js";
-import { choice, help, section, slider } from "./rows.js";
+import { marksSection } from "./marks.js";
+import { section, slider } from "./rows.js";
+import { TexturePanel } from "./texture.js";
 
 /** @typedef {import("../stage.js").Stage} Stage */
 
@@ -30,31 +32,6 @@ function viewSection(stage) {
 }
 
 /**
- * The brush.
- * @param {Stage} stage
- * @param {StylePanel} style knows the styles that can be painted
- */
-function brushSection(stage, style) {
-  const { brush } = stage;
-  const radius = slider({ name: "radius", label: "Radius", title: "Of the brush, in pixels of the picture (wheel, [ and ])", least: 3, most: 400, step: 1, value: brush.radius, changed: (value) => stage.setBrush({ radius: value }) });
-  const count = slider({ name: "count", label: "Vertices", title: "How many a touch puts or takes", least: 1, most: 60, step: 1, value: brush.count, changed: (value) => stage.setBrush({ count: value }) });
-  const spread = choice({ name: "spread", label: "Falloff", title: "How they are spread (O)", choices: ["uniform", "normal"], value: brush.spread, changed: (value) => stage.setBrush({ spread: value }) });
-  const paint = choice({ name: "paint", label: "Paints", title: "The style that the paint tool (T) gives to triangles", choices: [], value: "", changed: (value) => (stage.paintStyle = value) });
-  stage.watch(() => {
-    const select = /** @type {HTMLSelectElement} */ (paint.row.querySelector("select"));
-    if (select.options.length || !Object.keys(style.styles).length) return;
-    for (const name of Object.keys(style.styles)) select.add(new Option(name, name));
-    select.value = stage.paintStyle;
-  });
-  stage.watch(() => {
-    radius.set(stage.brush.radius);
-    count.set(stage.brush.count);
-    spread.set(stage.brush.spread);
-  });
-  return section("Brush and region", radius.row, count.row, spread.row, paint.row, help("Green dots show where vertices would come to be, before you click."));
-}
-
-/**
  * What to type to make the same without the editor.
  * @param {Stage} stage
  */
@@ -75,8 +52,9 @@ function commandSection(stage) {
 export function fillPanel(panel, stage) {
   const film = new FilmPanel(stage);
   const style = new StylePanel(stage);
-  const brush = brushSection(stage, style);
+  const texture = new TexturePanel(stage, style);
+  const brush = marksSection(stage, style, texture);
   const optimiser = new OptimiserPanel(stage);
-  panel.append(film.element, viewSection(stage), style.element, brush, optimiser.element, commandSection(stage));
+  panel.append(film.element, viewSection(stage), style.element, brush, texture.element, optimiser.element, commandSection(stage));
   return { film, style, optimiser };
 }

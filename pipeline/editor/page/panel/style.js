@@ -46,9 +46,17 @@ export class StylePanel {
   /** @param {string} name */
   put(name) {
     this.add.value = "";
-    if (!name) return;
+    if (name) this.lay(name, {});
+  }
+
+  /**
+   * Lay a style over the others.
+   * @param {string} name
+   * @param {Record<string, any>} values
+   */
+  lay(name, values) {
     for (const layer of this.layers) layer.isOpen = false;
-    this.layers.unshift({ name, values: {}, isOpen: true });
+    this.layers.unshift({ name, values, isOpen: true });
     this.changed();
   }
 

@@ -15,8 +15,8 @@ export const HELP = [
     ["B", "brush: left puts vertices, right takes them away"],
     ["[ and ]", "radius of the brush"],
     ["O", "soft falloff of the brush"],
-    ["R", "triangulate a region anew"],
-    ["T", "paint a style onto triangles"],
+    ["R", "region: drag around it, or click its corners"],
+    ["T", "paint a style, a texture or focus onto triangles"],
     ["P", "pin and unpin what is under the pointer"],
   ]],
   ["On what is under the pointer", [

@@ -16,7 +16,7 @@ export class Pointer {
     const { canvas } = stage;
     /** @type {Map<number, Point>} */
     this.fingers = new Map();
-    /** @type {{at: Point, button: number, isDragged: boolean, kind: "click" | "pan" | "move" | "paint" | "region", last: Point} | null} */
+    /** @type {{at: Point, button: number, isDragged: boolean, isFirst: boolean, kind: "click" | "pan" | "move" | "paint" | "region", last: Point} | null} */
     this.press = null;
     this.longTimer = 0;
     canvas.addEventListener("pointerdown", (event) => this.down(event));
@@ -57,8 +57,9 @@ export class Pointer {
       stage.drop();
       return;
     }
-    this.press = { at, last: at, button: event.button, isDragged: false, kind: this.kind(event) };
-    if (this.press.kind === "region") stage.polygon = [stage.pointer];
+    this.press = { at, last: at, button: event.button, isDragged: false, isFirst: true, kind: this.kind(event) };
+    this.press.isFirst = !stage.polygon.length;
+    if (this.press.kind === "region" && this.press.isFirst) stage.polygon = [stage.pointer];
     if (this.press.kind === "paint") this.paint(at);
     if (event.pointerType === "touch") this.longTimer = setTimeout(() => this.long(), LONG);
   }
@@ -162,11 +163,22 @@ export class Pointer {
     if (!press) return;
     stage.shift = event.shiftKey;
     if (press.kind === "move" && press.isDragged) stage.drop();
-    else if (press.kind === "region") stage.closeRegion();
+    else if (press.kind === "region") this.outline(press.isDragged, press.isFirst);
     else if ((press.kind === "click" || press.kind === "move") && !press.isDragged) {
       stage.click(press.button === 2 ? "right" : "left");
     }
     stage.repaint();
+  }
+
+  /**
+   * A region is dragged in one go, or gets a corner by every click.
+   * @param {boolean} isDragged
+   * @param {boolean} isFirst
+   */
+  outline(isDragged, isFirst) {
+    const { marks } = this.stage;
+    if (isDragged && isFirst) marks.close();
+    else if (!isDragged && !isFirst) marks.corner();
   }
 
   /** @param {PointerEvent} event */

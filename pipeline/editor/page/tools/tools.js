@@ -21,15 +21,15 @@ export const TOOLS = [
   {
     name: "region",
     key: "R",
-    label: "Triangulate a region anew",
-    hint: "Drag around a region: its vertices go, and others come, evenly spread.",
+    label: "Region",
+    hint: "Drag around a region, or click its corners and then the first one again. The panel says what it gets.",
     icon: '<path d="M4 14c-1-5 3-10 9-10s9 4 7 9-7 4-9 4-2 3-5 3"/>',
   },
   {
     name: "paint",
     key: "T",
-    label: "Paint a style onto triangles",
-    hint: "Drag over triangles: they are drawn in the style that the brush paints, through their whole shot. Wheel: radius.",
+    label: "Paint",
+    hint: "Drag over triangles: they get a style, a texture or focus, as the panel says, through their whole shot. Wheel: radius.",
     icon: '<path d="M20 4c-5 2-9 6-11 9l2 2c3-2 7-6 9-11zM8 14c-3 0-2 4-5 5 4 2 7 0 7-3z"/>',
   },
   {
