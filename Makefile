@@ -25,6 +25,9 @@ demo: $(DEMO_SHEET)
 	@echo "video:         $(DEMO_VIDEO)"
 	@echo "contact sheet: $(DEMO_SHEET)"
 
+# Tests start hundreds of processes: each would compile all modules if byte code were not kept.
+test cuda-check: export PYTHONDONTWRITEBYTECODE :=
+
 test: $(VENV)/.installed-dev
 	@$(BIN)/python -m pytest --numprocesses=logical --maxprocesses=4 --dist=worksteal
 

@@ -46,6 +46,19 @@ def test_a_song_is_cut_moved_and_filled_up(
 SILENT = EncodeOptions(audio=False)
 
 
+@pytest.mark.parametrize(("offset", "where"), [(-1.5, "over before"), (9.0, "after the film")])
+def test_a_song_beside_the_film_is_told(offset: float, where: str, tmp_path: Path) -> None:
+    """Nothing of it is heard, and that is no song that "ends early"."""
+    song = save(tmp_path / "song.wav", np.full((1, RATE), 0.1))
+    options = EncodeOptions(audio_mode=str(song), audio_offset=offset)
+    shapes = probe(Path("sample_videos/shapes.mp4"))
+    with open_encoder(tmp_path / "out.mp4", shapes, (64, 48), options) as made:
+        for k in range(10):
+            made.write(np.zeros((48, 64, 3), np.uint8), k, Fraction(1, 25))
+    (told,) = made.notes
+    assert where in told
+
+
 def test_an_offset_needs_a_song() -> None:
     """And a day is enough."""
     with pytest.raises(OptionError, match="name one"):

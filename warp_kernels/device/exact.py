@@ -8,8 +8,11 @@ from typing import Any
 CPU_FLAGS = (
     "-march=native -mprefer-vector-width=512 -mllvm=-inline-threshold=9000"
     " -mllvm=-inline-cold-callsite-threshold=3000 -mllvm=-slp-recursion-max-depth=4"
+    " -fdelayed-template-parsing -fpch-instantiate-templates"
 )
-"""Warp's own flags, and the widest registers that there are: sums and pixels fill them.
+"""Warp's own flags, and the widest registers that there are: sums and pixels fill them. The last
+two shorten compiling alone: templates of Warp's headers that no kernel needs are only skimmed, and
+those that all need are made once, with the headers.
 
 The same for all kernels: the compiler reads Warp's headers once for every set of flags, which takes
 it longer than most kernels do."""

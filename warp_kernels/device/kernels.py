@@ -11,17 +11,18 @@ the same name in every run, and is found again.
 
 import os
 from collections.abc import Callable, Iterable
-from concurrent.futures import ThreadPoolExecutor, as_completed
+from concurrent.futures import Future, ThreadPoolExecutor, as_completed
 from pathlib import Path
 from typing import Any
 
 import warp as wp
 
+from warp_kernels.device.headers import headers_are_read, shared_headers
 from warp_kernels.device.kernel_turn import waited_turn
 from warp_kernels.device.whole_kernels import remove_broken
 
 MOST_COMPILERS = 8
-"""Threads that compile: each reads Warp's headers for itself, which takes as long as a kernel."""
+"""Threads that compile."""
 COMPILER = "trimotion-compiler"
 """Name of these threads."""
 CUDA_BLOCK = 64
@@ -91,7 +92,7 @@ class Kernels:
             taken: What `take` gave.
         """
         modules = dict.fromkeys(taken.values())
-        folder = Path(wp.config.kernel_cache_dir or "")
+        folder = _folder()
         # all names before the first compilation, see above
         places = {module: folder / self._name(module) for module in modules}
         remove_broken(places.values(), folder, lambda: None)
@@ -121,11 +122,11 @@ class Kernels:
         """Compile modules side by side, and look after each."""
         pool = _take_pool()
         try:
-            block = block_of(self._device)
-            jobs = [
-                pool.submit(wp.load_module, module, self._device, block_dim=block)
-                for module in modules
-            ]
+            if modules and self._device.is_cpu and not headers_are_read(_folder()):
+                # the shortest, last, while the others would only read the same headers
+                _begin(pool, modules.pop(), self._device).result()
+                look()
+            jobs = [_begin(pool, module, self._device) for module in modules]
             for job in as_completed(jobs):
                 job.result()
                 look()
@@ -135,7 +136,7 @@ class Kernels:
 
 
 def compile_early(device: Any, kernels: list[Any]) -> None:
-    """Compile kernels that every job needs, at once; the threads are kept for those to come.
+    """Compile kernels that every job needs, one after the other; the threads are kept for others.
 
     Args:
         device: Warp's device.
@@ -143,14 +144,26 @@ def compile_early(device: Any, kernels: list[Any]) -> None:
     """
     global _pool
     _pool = _take_pool()
-    with waited_turn(Path(wp.config.kernel_cache_dir or ""), lambda: None):
-        block = block_of(device)
-        jobs = [
-            _pool.submit(wp.load_module, kernel.module, device, block_dim=block)
-            for kernel in kernels
-        ]
-        for job in jobs:
-            job.result()
+    with waited_turn(_folder(), lambda: None):
+        for kernel in kernels:  # one reads the headers for all
+            _begin(_pool, kernel.module, device).result()
+
+
+def _begin(pool: ThreadPoolExecutor, module: Any, device: Any) -> Future[None]:
+    """Begin to compile a module in a thread of the pool, whose owner holds the lock of Warp."""
+    block = block_of(device)
+    return pool.submit(_with_headers, wp.load_module, module, device, block_dim=block)
+
+
+def _with_headers(work: Callable[..., object], *given: Any, **named: Any) -> None:
+    """Work where the headers that were read before are at hand."""
+    with shared_headers(_folder()):
+        work(*given, **named)
+
+
+def _folder() -> Path:
+    """Where compiled kernels are kept."""
+    return Path(wp.config.kernel_cache_dir or "")
 
 
 def block_of(device: Any) -> int:

@@ -35,6 +35,8 @@ class SongTrack:
         self._problems: list[str] = []
         self._held: np.ndarray | None = None
         self._count = 0
+        self._heard = False
+        self._late = False
         self._pieces: Iterator[np.ndarray] = iter(())
 
     def begin(self, start: Fraction) -> None:
@@ -44,6 +46,7 @@ class SongTrack:
             start: When the output plays the sound's time 0 [s of the output]; below 0 to begin
                 within it.
         """
+        self._late = start > 0
         self._pieces = self._moved(round(start * self._form.rate))
 
     def advance(self, time: Fraction) -> None:
@@ -77,7 +80,10 @@ class SongTrack:
         """
         self.advance(end)
         missing = round(end * self._form.rate) - self._count
-        if missing > _TOLD * self._form.rate:
+        if not self._heard:
+            where = "begins after the film" if self._late else "is over before the film"
+            self.problem = f"nothing of {self._path.name} is heard: with this offset it {where}"
+        elif missing > _TOLD * self._form.rate:
             early = f"{missing / self._form.rate:.1f} s before the film"
             self.problem = f"{self._path.name} ends {early}: silence follows"
         while missing > 0:
@@ -107,6 +113,7 @@ class SongTrack:
             dropped = min(-shift, piece.shape[1])
             shift += dropped
             if dropped < piece.shape[1]:
+                self._heard = True
                 yield piece[:, dropped:]
 
     def _encode(self, samples: np.ndarray) -> None:
