@@ -73,8 +73,8 @@ def unpack_whole(blob: Any, shape: tuple[int, ...]) -> np.ndarray:
     planes = list(_planes(blob, width, count))
     numbers = planes[-1].view(np.int8).astype(np.int32 if width <= 4 else np.int64)
     for plane in planes[-2::-1]:
-        numbers <<= 8
-        numbers |= plane
+        np.left_shift(numbers, 8, out=numbers)
+        np.bitwise_or(numbers, plane, out=numbers)
     return numbers.reshape(shape)
 
 
@@ -84,11 +84,11 @@ def _planes(blob: bytes, width: int, count: int) -> Iterator[np.ndarray]:
     for place in range(width):
         head = 1 + LENGTH * place
         end = start + int.from_bytes(blob[head : head + LENGTH], "little")
-        plane = memoryview(blob)[start:end]
+        plane: memoryview | bytes = memoryview(blob)[start:end]
         if end - start != count:
             machine = zlib.decompressobj()
             try:
-                plane = memoryview(machine.decompress(plane, count + 1))
+                plane = machine.decompress(plane, count + 1)
             except zlib.error as error:
                 raise ValueError(str(error)) from error
         if len(plane) != count:
