@@ -14,11 +14,10 @@ from warp_kernels.color_model import CHANNELS, ColorModel
 
 PLACES = 1 << 16
 """Steps of a position in a pixel: 256 of them are what decides whether a pixel is covered."""
-SHADES = 64
+SHADES = 63
 """Steps of a colour in a code value: no place of a triangle is off by more than half of one in a
-linear colour."""
-STEP = 1.0 / SHADES
-"""The same in code values; a power of two, so it may be the first factor or the last one."""
+linear colour. An odd number of them has whole code values among them and no halves, of which no two
+ways to round to code values would have to agree."""
 Parts = tuple[np.ndarray, ...]
 """Numbers of the triangles, each [T]."""
 DROPPED = 7
@@ -117,7 +116,7 @@ def value_range(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         Lowest and highest, from 0 to 255, each [...].
     """
     lowest, highest = values.min(axis=0), values.max(axis=0)
-    bounds = np.floor(lowest * STEP), np.ceil(highest * STEP)
+    bounds = np.floor(lowest / SHADES), np.ceil(highest / SHADES)
     return np.clip(bounds[0], 0.0, 255.0), np.clip(bounds[1], 0.0, 255.0)
 
 
@@ -167,7 +166,7 @@ class Nodes:
             polynomial = _linear if self._degree == 1 else _quadratic
             terms = polynomial(values, self._frame, self._origin)
         for term, numbers in enumerate(terms):
-            np.multiply(numbers, STEP, out=out[:, term])
+            np.divide(numbers, SHADES, out=out[:, term])
 
 
 def _frame(x: np.ndarray, y: np.ndarray) -> Parts:
