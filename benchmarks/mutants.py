@@ -92,7 +92,7 @@ MUTANTS = (
     ),
     Mutant(
         "blobs unpack to any size",
-        "pipeline/track/blobs.py",
+        "pipeline/track/packing/plain.py",
         "machine.decompress(blob, size + 1)",
         "machine.decompress(blob)",
         "tests/test_track.py -k no_larger",

@@ -15,6 +15,7 @@ from stages.solve.approximate import Approximator
 from stages.solve.bench import Bench
 from stages.solve.fitting import Fitting
 from stages.solve.following import Following
+from stages.solve.grid import rounded_places
 from stages.solve.hold import Hold
 from stages.solve.quality import FALL, Trial, smallest_that_reaches
 from stages.solve.rhythm import BOILING, CALM
@@ -300,6 +301,7 @@ class Triangulator:
 
     def _solution(self, frame: Frame, mesh: Mesh, earlier: Snapshot | None = None) -> Snapshot:
         """The snapshot of a mesh that was just optimised, and that the next frame starts from."""
+        mesh = rounded_places(mesh)
         snapshot = self._drawn.snapshot(frame, mesh, earlier, self._locks)
         self._solved = replace(snapshot, energies=self._even.appraiser.energies(mesh))
         return snapshot

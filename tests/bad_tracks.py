@@ -17,7 +17,10 @@ from typing import Any
 import cv2
 import numpy as np
 
-from pipeline.track.blobs import pack, unpack
+from pipeline.track import TrackReader
+from pipeline.track.packing.plain import pack
+from pipeline.track.packing.topologies import BY_ANOTHER
+from pipeline.track.packing.whole_numbers import pack_whole
 
 Plant = Callable[[sqlite3.Connection, np.random.Generator], None]
 FilePlant = Callable[[Path, np.random.Generator], None]
@@ -50,21 +53,26 @@ def some_frame(connection: sqlite3.Connection, rng: np.random.Generator, table: 
     return int(rng.choice(frames_with(connection, table)))
 
 
+def numbers_of(connection: sqlite3.Connection, frame: int, column: str) -> np.ndarray:
+    """What a frame's blob holds, in one row."""
+    ((_, _, path), *_) = connection.execute("PRAGMA database_list").fetchall()
+    with TrackReader(Path(path)) as track:
+        snapshot = track.snapshot(frame)
+    owner = snapshot if hasattr(snapshot, column) else snapshot.mesh
+    return getattr(owner, column).astype(KINDS[column]).reshape(-1).copy()
+
+
 def rewrite(
     column: str, change: Callable[[np.ndarray, np.random.Generator], np.ndarray | None]
 ) -> Plant:
-    """A plant that changes the numbers of one frame's blob, packed again as it was."""
+    """A plant that changes the numbers of one frame's blob, packed plainly."""
 
     def plant(connection: sqlite3.Connection, rng: np.random.Generator) -> None:
         table = table_of(column)
         frame = some_frame(connection, rng, table)
-        query = f"SELECT {column} FROM {table} WHERE frame = ?"
-        (blob,) = connection.execute(query, (frame,)).fetchone()
-        kind = KINDS[column]
-        size = len(zlib.decompress(blob)) // np.dtype(kind).itemsize
-        numbers = unpack(blob, kind, (size,)).copy()
+        numbers = numbers_of(connection, frame, column)
         changed = change(numbers, rng)
-        packed = pack(numbers if changed is None else changed, kind)
+        packed = pack(numbers if changed is None else changed, KINDS[column])
         connection.execute(f"UPDATE {table} SET {column} = ? WHERE frame = ?", (packed, frame))
 
     return plant
@@ -170,6 +178,13 @@ def bombed_frame(connection: sqlite3.Connection, rng: np.random.Generator) -> No
         connection.execute(f"UPDATE topologies SET {column} = ? WHERE frame = ?", (packed, frame))
 
 
+def by(frame: int) -> bytes:
+    """Triangles that are said to be those of another frame, one of 40 excepted."""
+    marks = pack(np.packbits(np.arange(40) > 0), "u1")
+    head = bytes([BY_ANOTHER]) + int(frame).to_bytes(8, "little", signed=True)
+    return head + len(marks).to_bytes(8, "little") + marks + pack_whole(np.array([[0], [1], [2]]))
+
+
 def map_of(shape: list[int], kind: str, content: bytes) -> dict[str, Any]:
     """An importance map as a header holds it."""
     return {"dtype": kind, "shape": shape, "data": base64.b64encode(content).decode()}
@@ -225,6 +240,21 @@ PLANTS: dict[str, Plant] = {
     "blob is text": put("vertices", lambda b, rng: "vertices"),
     "blob is a number": put("triangle_ids", lambda b, rng: int(rng.integers(99))),
     "blob is a bomb": put("energies", lambda b, rng: bomb(100)),
+    "whole numbers are a bomb": put("coefficients", lambda b, rng: b[:1] + bomb(100)),
+    "whole numbers of other widths": put("coefficients", lambda b, rng: bytes([b[0] + 1]) + b[1:]),
+    "whole numbers are too few": put("energies", lambda b, rng: pack_whole(np.arange(7))),
+    "whole numbers are huge": put(
+        "counts", lambda b, rng: pack_whole(np.full(40, -(2 ** rng.integers(1, 54))))
+    ),
+    "triangles by a frame that is not": put("triangles", lambda b, rng: by(rng.integers(9, 99))),
+    "triangles by no frame": put("triangles", lambda b, rng: by(-rng.integers(1, 99))),
+    "triangles by themselves": execute(
+        *(
+            f"UPDATE topologies SET triangles = X'{BY_ANOTHER:x}{frame:02x}' || zeroblob(29)"
+            f" WHERE frame = {frame}"
+            for frame in (0, 1)
+        )
+    ),
     "blob of zeros": put("vertex_ids", lambda b, rng: zlib.compress(bytes(4096))),
     "frame of bombs": bombed_frame,
     "frame number is text": cell("pts", "soon", b"soon", 1.5),

@@ -27,6 +27,7 @@ from stages.render import Renderer
 from stages.snapshot import Snapshot
 from stages.solve.color_limits import SLACK
 from stages.solve.color_owners import color_owners
+from stages.solve.grid import shades, value_range
 from stages.spaces import SPACES
 from stages.topology.appraise import Appraiser
 from stages.topology.collapse_slivers import collapse_slivers
@@ -127,6 +128,21 @@ def test_triangles_without_a_pixel_are_not_black(
         picture = halves().astype(int)
         assert (shown >= picture.min(axis=(0, 1)) - ROUNDING).all()
         assert (shown <= picture.max(axis=(0, 1)) + ROUNDING).all()
+
+
+def test_few_pixels_do_not_take_a_large_triangle_along(device: str) -> None:
+    """A dark corner of a bright half: all of it would turn dark for a hundredth of its pixels.
+
+    A past bug: a band of the sky turned green for twenty of its thirty thousand pixels.
+    """
+    picture = np.full((64, 64, 3), 200, dtype=np.uint8)
+    picture[:8, :8] = 20
+    corners = np.array([[0, 0], [64, 0], [64, 64], [0, 64]], dtype=float)
+    mesh = mesh_of(corners, np.array([[0, 1, 2], [0, 2, 3]]), 64, 64)
+    triangulator = Triangulator(Device(device, 2), (64, 64), TriangulateOptions())
+    snapshot = triangulator.fit(frame_of(picture), mesh)
+    assert (snapshot.coefficients > 190).all()
+    assert snapshot.rmse < picture.std()
 
 
 @pytest.mark.parametrize("name", STYLES)
@@ -264,7 +280,7 @@ def test_borders_show_no_third_colour(color: str, is_weighted: bool, device: str
     ]
     assert away[0] > 0
     assert away[1] < away[0]
-    assert (snapshot.energies >= energies - 1e-6).all()
+    assert (snapshot.energies >= energies * (1 - 1e-5) - 1e-6).all()
     shown = drawn(replace(snapshot, limits=None), style_of(snapshot.model), device)
     told = np.sqrt(np.square(shown - picture.astype(float)).mean())
     assert snapshot.rmse == pytest.approx(told, rel=0.02)
@@ -300,8 +316,11 @@ def test_polynomials_stay_within_their_pixels(model: ColorModel, device: str) ->
     limits = snapshot.limits[covering].astype(int)
     assert (limits[:, 0] >= extremes[covering, 0].astype(int) - SLACK).all()
     assert (limits[:, 1] <= extremes[covering, 1].astype(int) + SLACK).all()
-    assert (limits[:, 0] <= extremes[covering, 0]).all()
-    assert (limits[:, 1] >= extremes[covering, 1]).all()
+    # no pixel's colour is out of bounds, unless the polynomial does not reach it anyway
+    values = shades(mesh, model, snapshot.coefficients)
+    lowest, highest = (bound.T[covering] for bound in value_range(values))
+    assert (limits[:, 0] <= np.maximum(extremes[covering, 0], lowest)).all()
+    assert (limits[:, 1] >= np.minimum(extremes[covering, 1], highest)).all()
     errors = [
         np.square(drawn(s, Gradient(), device) - picture.astype(int)).mean()
         for s in (snapshot, replace(snapshot, limits=None))

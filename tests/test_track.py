@@ -19,7 +19,7 @@ from pipeline.options.solve_options import SolveOptions
 from pipeline.progress import Progress
 from pipeline.track import TrackReader, TrackWriter
 from pipeline.track.agreement import differing_flags
-from pipeline.track.blobs import pack, unpack
+from pipeline.track.packing.plain import pack, unpack
 from pipeline.track.plain_values import from_plain, to_plain
 from stages.flows import FLOWS
 from stages.layouts.importance import Importance
@@ -267,7 +267,7 @@ def spoil(path: Path, how: str) -> Path:
         ("cut off", "is cut off"),
         ("page", "damaged"),
         ("PRAGMA application_id = 7", "is no mesh track"),
-        ("PRAGMA user_version = 99", "format 99, and this program reads format 1"),
+        ("PRAGMA user_version = 99", "format 99, and this program reads formats up to 2"),
         ("DROP TABLE header", "damaged"),
         ("DELETE FROM header WHERE key = 'source'", "header is damaged"),
         ("UPDATE header SET value = '[' WHERE key = 'options'", "header is damaged"),

@@ -10,6 +10,7 @@ from pathlib import Path
 from pipeline.track.agreement import differing_flags
 from pipeline.track.header import Header, write_header
 from pipeline.track.joints import Joint, finished_joints
+from pipeline.track.packing.topologies import make_whole, pack_topology, read_topology
 from pipeline.track.reader import FrameRow, TrackReader
 from pipeline.track.schema import (
     LATER,
@@ -17,6 +18,7 @@ from pipeline.track.schema import (
     create,
     has_table,
     need_table,
+    open_existing,
     put_in_place,
     writing,
 )
@@ -177,22 +179,23 @@ def _copy(connection: sqlite3.Connection, part: _Piece, begin: int, end: int | N
             (begin, end, end),
         )
     if begin > part.first:
-        _begin_with(connection, begin)
+        _begin_with(connection, part, begin)
     connection.execute("COMMIT")
     connection.execute("DETACH part")
 
 
-def _begin_with(connection: sqlite3.Connection, begin: int) -> None:
+def _begin_with(connection: sqlite3.Connection, part: _Piece, begin: int) -> None:
     """Let a frame begin what came before it in its part: a shot, and a topology."""
-    (holder,) = connection.execute(
-        "SELECT topology FROM part.frames WHERE frame = ?", (begin,)
-    ).fetchone()
-    if holder < begin:
-        connection.execute(
-            "INSERT INTO topologies SELECT ?, triangles, vertex_ids, triangle_ids "
-            "FROM part.topologies WHERE frame = ?",
-            (begin, holder),
-        )
+    with closing(open_existing(part.path)) as source:
+        (holder,) = source.execute(
+            "SELECT topology FROM frames WHERE frame = ?", (begin,)
+        ).fetchone()
+        if holder < begin:
+            connection.execute(
+                "INSERT INTO topologies VALUES (?, ?, ?, ?)",
+                (begin, *pack_topology(read_topology(source, holder))),
+            )
+        make_whole(connection, source, begin)
     for column in ("shot", "topology"):
         connection.execute(
             f"UPDATE frames SET {column} = ? WHERE frame >= ? AND {column} < ?",

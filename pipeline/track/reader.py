@@ -10,12 +10,20 @@ from typing import Any
 
 import numpy as np
 
-from pipeline.track.blobs import unpack, unpack_rows
 from pipeline.track.header import Header, read_header
+from pipeline.track.packing.compact import (
+    unpack_colors,
+    unpack_energies,
+    unpack_numbers,
+    unpack_places,
+)
+from pipeline.track.packing.plain import unpack_rows
+from pipeline.track.packing.topologies import unpack_topology
 from pipeline.track.schema import (
     ENDING,
+    LAST,
     MAGIC,
-    MOST_TRIANGLES,
+    check_counts,
     has_table,
     open_existing,
     reading,
@@ -26,11 +34,7 @@ from stages.mesh import Mesh
 from stages.snapshot import Snapshot
 from stages.solve.color_owners import color_owners
 from stages.validate import assert_finite, assert_sound
-from warp_kernels.color_model import CHANNELS
 from warp_kernels.errors import TrackError
-
-LAST = 1 << 53
-"""Beyond any number of a frame, of a vertex or of a time: what a double still holds exactly."""
 
 
 @dataclass(frozen=True)
@@ -141,21 +145,25 @@ class TrackReader:
             raise TrackError(f"{self.path}: holds no frame {frame}; see trimotion info {self.path}")
         pts, holder, V, T, *next_ids, vertices, coefficients, energies, counts = found[0][:10]
         try:
-            _check_counts(pts, holder, V, T, *next_ids)
+            check_counts(V, T)
+            _check_numbers(pts, holder, *next_ids)
             mesh = self._mesh(V, T, next_ids, vertices, found[0][10:])
             model = self.header.model
-            covered = unpack(counts, "<i8", (T,))
-            colors = unpack(coefficients, "<f8", (T, CHANNELS, model.term_count))
+            covered = unpack_numbers(counts, T)
+            colors, limits = unpack_colors(mesh, model, coefficients, self._limits(frame))
+            blank = np.flatnonzero(covered == 0)
+            if len(blank):  # of no meaning, and black in tracks of old programs
+                colors[blank] = colors[color_owners(mesh, covered)[blank]]
             snapshot = Snapshot(
                 frame_index=frame,
                 pts=pts,
                 time_base=Fraction(self.header.info.time_base),
                 mesh=mesh,
                 model=model,
-                coefficients=colors[color_owners(mesh, covered)],  # black in tracks of old programs
-                energies=unpack(energies, "<f8", (T,)),
+                coefficients=colors,
+                energies=unpack_energies(energies, T),
                 counts=covered,
-                limits=self._limits(frame, T),
+                limits=limits,
                 locks=self._locks(frame, mesh),
             )
             assert_finite(snapshot)
@@ -172,14 +180,15 @@ class TrackReader:
         self, V: int, T: int, next_ids: Sequence[int], vertices: Any, topology: Sequence[Any]
     ) -> Mesh:
         """The triangles of a frame, checked before more is unpacked."""
-        triangles, vertex_ids, triangle_ids = topology
+        with reading(self.path):
+            found = unpack_topology(self._connection, topology, V, T)
         mesh = Mesh(
             width=self.header.info.width,
             height=self.header.info.height,
-            vertex_ids=unpack(vertex_ids, "<i8", (V,)),
-            triangle_ids=unpack(triangle_ids, "<i8", (T,)),
-            triangles=unpack(triangles, "<i4", (T, 3)),
-            vertices=unpack(vertices, "<f8", (V, 2)),
+            vertex_ids=found.vertex_ids,
+            triangle_ids=found.triangle_ids,
+            triangles=found.triangles,
+            vertices=unpack_places(vertices, V),
             next_vertex_id=next_ids[0],
             next_triangle_id=next_ids[1],
         )
@@ -192,13 +201,13 @@ class TrackReader:
             "track, or solve again"
         )
 
-    def _limits(self, frame: int, T: int) -> np.ndarray | None:
-        """What colours keep to; constant ones need nothing, and old tracks say nothing."""
+    def _limits(self, frame: int) -> Any:
+        """The blob of what colours keep to; constant ones need none, and old tracks have none."""
         with reading(self.path):
             if not has_table(self._connection, "limits"):
                 return None
         found = self._all("SELECT limits FROM limits WHERE frame = ?", frame)
-        return unpack(found[0][0], "u1", (T, 2, CHANNELS)) if found else None
+        return found[0][0] if found else None
 
     def _locks(self, frame: int, mesh: Mesh) -> Locks:
         """What of a frame's mesh a person holds fast."""
@@ -270,11 +279,9 @@ def _check_row(row: FrameRow, before: FrameRow | None, header: Header) -> None:
             raise ValueError(f"its shot begins with frame {row.shot}, before an earlier one ends")
 
 
-def _check_counts(pts: Any, holder: Any, V: Any, T: Any, *next_ids: Any) -> None:
-    """Refuse numbers that are none, and sizes that no mesh has: so much memory is asked for."""
-    if not all(type(number) is int for number in (pts, holder, V, T, *next_ids)):
+def _check_numbers(pts: Any, holder: Any, *next_ids: Any) -> None:
+    """Refuse numbers that are none."""
+    if not all(type(number) is int for number in (pts, holder, *next_ids)):
         raise ValueError("numbers of other types")
-    if not (1 <= T <= MOST_TRIANGLES and 3 <= V <= T + 2):
-        raise ValueError(f"{V} vertices of {T} triangles")
     if not all(0 < number <= LAST for number in next_ids):
         raise ValueError("impossible numbers of vertices or triangles")

@@ -6,7 +6,15 @@ from pathlib import Path
 from pipeline.options.edit_log import EditLog
 from pipeline.track.header import read_header, write_header
 from pipeline.track.plain_values import to_plain
-from pipeline.track.schema import LATER, TABLES, has_table, need_table, open_existing, writing
+from pipeline.track.schema import (
+    LATER,
+    TABLES,
+    complete,
+    has_table,
+    need_table,
+    open_existing,
+    writing,
+)
 
 
 def replace_frames(path: Path, part: Path, first: int, last: int, edits: EditLog) -> None:
@@ -29,6 +37,7 @@ def replace_frames(path: Path, part: Path, first: int, last: int, edits: EditLog
             header = read_header(path, connection)
             connection.execute("ATTACH ? AS part", (f"{part.absolute().as_uri()}?mode=ro",))
             connection.execute("BEGIN IMMEDIATE")
+            complete(connection)
             for table in TABLES:
                 is_there = has_table(connection, table, "part")
                 if is_there and table in LATER:

@@ -5,7 +5,7 @@ hold in `meshes`. A topology is stored with the frame that brought it and with t
 every shot; the frames after it refer to it. All that the next frame depends on is stored to the
 bit: a job that goes on from a row gives what an uninterrupted one gives.
 
-Blobs are little-endian arrays, packed as `blobs` tells:
+Blobs are little-endian arrays, packed as `packing.plain` tells, all of those of format 1:
 
     meshes      vertices [V, 2] float64 (px), coefficients [T, 3, K] float64, energies [T] float64,
                 counts [T] int64
@@ -13,6 +13,11 @@ Blobs are little-endian arrays, packed as `blobs` tells:
     limits      limits [T, 2, 3] uint8 of polynomial colours; tracks of earlier programs have none
     locks       ids of vertices [N], edges [M, 2] and bare triangles [K] that a person holds fast,
                 all int64; only where there are some
+
+Since format 2 numbers on the grid of solutions are told in fewer bytes, to the same bits: by
+`packing.compact`, and triangles also by those of another frame: by `packing.topologies`. Blobs say
+which they are by their first byte, so rows of both formats stand side by side in a track that goes
+on.
 
 Edits by hand that a person is at stand in `edits`, which is only ever appended to: a row names the
 edit that it follows, so those that were undone stay. The last row of `edit_places` says which of
@@ -25,6 +30,7 @@ import sqlite3
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 from pipeline.track.guard import guard
 from stages.media.writing.commit import PendingFile, output_error
@@ -34,8 +40,12 @@ MAGIC = b"SQLite format 3\0"
 """How every file of SQLite begins."""
 APPLICATION = 0x74726D6F
 """What marks a file of SQLite as a track ("trmo")."""
-FORMAT = 1
-"""Number of this form; another program reads a track only if it is the same."""
+FORMAT = 2
+"""Number of this form; a program that does not know it reads no such track."""
+EARLIER = (1,)
+"""Earlier forms that are read, and gone on with: all of their blobs are plain."""
+LAST = 1 << 53
+"""Beyond any number of a frame, of a vertex or of a time: what a double still holds exactly."""
 ENDING = ".mtrk"
 """How the names of tracks end."""
 MOST_BYTES = 1 << 27
@@ -157,14 +167,27 @@ def open_existing(path: Path) -> sqlite3.Connection:
 
 
 def complete(connection: sqlite3.Connection) -> None:
-    """Give a track of an earlier program, with which a run goes on, the table that it lacks."""
+    """Make a track of an earlier program, with which a run goes on, one of this form."""
     need_table(connection, "limits")
+    connection.execute(f"PRAGMA user_version = {FORMAT}")
 
 
 def need_table(connection: sqlite3.Connection, table: str) -> None:
     """Make a table of `LATER` if it is not there."""
     if not has_table(connection, table):
         connection.execute(LATER[table])
+
+
+def check_counts(V: Any, T: Any) -> None:
+    """Refuse numbers of vertices and triangles that no mesh has: so much memory is asked for.
+
+    Raises:
+        ValueError: If they are none.
+    """
+    if not (type(V) is int and type(T) is int):
+        raise ValueError("numbers of other types")
+    if not (1 <= T <= MOST_TRIANGLES and 3 <= V <= T + 2):
+        raise ValueError(f"{V} vertices of {T} triangles")
 
 
 def has_table(connection: sqlite3.Connection, table: str, schema: str = "main") -> bool:
@@ -263,9 +286,9 @@ def _check_form(path: Path, connection: sqlite3.Connection) -> None:
     if application != APPLICATION:
         raise TrackError(NO_TRACK.format(path))
     (form,) = connection.execute("PRAGMA user_version").fetchone()
-    if form != FORMAT:
+    if form not in (FORMAT, *EARLIER):
         raise TrackError(
-            f"{path}: is a track of format {form}, and this program reads format {FORMAT}; "
+            f"{path}: is a track of format {form}, and this program reads formats up to {FORMAT}; "
             "use the version that made it, or solve again"
         )
     # Views, triggers and tables of other columns would be a stranger's program.

@@ -8,8 +8,16 @@ from types import TracebackType
 
 import numpy as np
 
-from pipeline.track.blobs import pack
 from pipeline.track.header import Header, write_header
+from pipeline.track.packing.compact import pack_colors, pack_energies, pack_numbers, pack_places
+from pipeline.track.packing.plain import pack
+from pipeline.track.packing.topologies import (
+    BaseTriangles,
+    base_frame,
+    pack_topology,
+    read_base,
+    topology_of,
+)
 from pipeline.track.schema import (
     MOST_TRIANGLES,
     complete,
@@ -22,7 +30,7 @@ from pipeline.track.schema import (
 from stages.media.writing.commit import PendingFile
 from stages.mesh import Mesh
 from stages.snapshot import Snapshot
-from warp_kernels.errors import OutputError
+from warp_kernels.errors import OutputError, TrackError
 
 
 class TrackWriter:
@@ -45,6 +53,7 @@ class TrackWriter:
         self._topology: Mesh | None = None
         self._shot = -1
         self._holder = -1
+        self._base: BaseTriangles | None = None
 
     @classmethod
     def resume(cls, path: Path, header: Header, last: Snapshot, shot: int) -> "TrackWriter":
@@ -68,6 +77,7 @@ class TrackWriter:
             (writer._holder,) = writer._connection.execute(
                 "SELECT topology FROM frames WHERE frame = ?", (last.frame_index,)
             ).fetchone()
+            writer._base = _base_of(path, writer._connection, writer._holder)
         writer._topology, writer._shot = last.mesh, shot
         return writer
 
@@ -104,28 +114,7 @@ class TrackWriter:
                 f"{MOST_TRIANGLES}",
                 "ask for fewer",
             )
-        brings = shot != self._shot or not _same_topology(self._topology, mesh)
-        if brings:
-            self._holder = frame
-        row: tuple[object, ...] = (
-            *(frame, snapshot.pts, shot, self._holder, mesh.vertex_count, mesh.triangle_count),
-            *(mesh.next_vertex_id, mesh.next_triangle_id, snapshot.rmse),
-        )
-        arrays = (
-            pack(mesh.vertices, "<f8"),
-            pack(snapshot.coefficients, "<f8"),
-            pack(snapshot.energies, "<f8"),
-            pack(snapshot.counts, "<i8"),
-        )
-        rows: dict[str, tuple[object, ...]] = {"frames": row, "meshes": (frame, *arrays)}
-        if brings:
-            rows["topologies"] = (frame, *_packed_topology(mesh))
-        if snapshot.limits is not None:
-            rows["limits"] = (frame, pack(snapshot.limits, "u1"))
-        if not snapshot.locks.is_empty:
-            locks = snapshot.locks
-            held = (pack(ids, "<i8") for ids in (locks.vertices, locks.edges, locks.bare))
-            rows["locks"] = (frame, *held)
+        rows = self._rows(snapshot, shot)
         connection = self._opened()
         with writing(self._path):
             if not connection.in_transaction:
@@ -138,6 +127,36 @@ class TrackWriter:
             if not more:
                 connection.execute("COMMIT")
         self._topology, self._shot = mesh, shot
+
+    def _rows(self, snapshot: Snapshot, shot: int) -> dict[str, tuple[object, ...]]:
+        """What of a frame goes into which table."""
+        mesh, frame = snapshot.mesh, snapshot.frame_index
+        rows: dict[str, tuple[object, ...]] = {}
+        if shot != self._shot:
+            self._base = None  # parts of a track stand alone
+        if shot != self._shot or not _same_topology(self._topology, mesh):
+            self._holder = frame
+            topology = topology_of(mesh)
+            packed = pack_topology(topology, self._base)
+            rows["topologies"] = (frame, *packed)
+            if base_frame(packed[0]) is None:
+                self._base = BaseTriangles(frame, len(packed[0]), topology)
+        rows["frames"] = (
+            *(frame, snapshot.pts, shot, self._holder, mesh.vertex_count, mesh.triangle_count),
+            *(mesh.next_vertex_id, mesh.next_triangle_id, snapshot.rmse),
+        )
+        places, energies = pack_places(mesh.vertices), pack_energies(snapshot.energies)
+        coefficients, limits = pack_colors(
+            mesh, snapshot.model, snapshot.coefficients, snapshot.counts, snapshot.limits
+        )
+        rows["meshes"] = (frame, places, coefficients, energies, pack_numbers(snapshot.counts))
+        if limits is not None:
+            rows["limits"] = (frame, limits)
+        if not snapshot.locks.is_empty:
+            locks = snapshot.locks
+            held = (pack(ids, "<i8") for ids in (locks.vertices, locks.edges, locks.bare))
+            rows["locks"] = (frame, *held)
+        return rows
 
     def finish(self) -> None:
         """Note that the whole range is there.
@@ -174,9 +193,9 @@ def _same_topology(before: Mesh | None, mesh: Mesh) -> bool:
     return all(one is other or np.array_equal(one, other) for one, other in pairs)
 
 
-def _packed_topology(mesh: Mesh) -> tuple[bytes, ...]:
-    return (
-        pack(mesh.triangles, "<i4"),
-        pack(mesh.vertex_ids, "<i8"),
-        pack(mesh.triangle_ids, "<i8"),
-    )
+def _base_of(path: Path, connection: sqlite3.Connection, holder: int) -> BaseTriangles | None:
+    """By what a track that goes on tells its topologies, as one that was never left would."""
+    try:
+        return read_base(connection, holder)
+    except ValueError as error:
+        raise TrackError(f"{path}: frame {holder} is damaged ({error}); solve again") from error

@@ -23,7 +23,7 @@ def color_owners(mesh: Mesh, counts: np.ndarray) -> np.ndarray:
     owners = np.arange(mesh.triangle_count)
     blank = np.flatnonzero(counts == 0)
     while len(blank):
-        twins = mesh.twins.reshape(-1, 3)[blank]
+        twins = _twins_of(mesh, blank)
         corners = mesh.corners[blank]
         lengths = np.linalg.norm(corners[:, [1, 2, 0]] - corners, axis=2)
         beside = owners[twins // 3]
@@ -35,3 +35,18 @@ def color_owners(mesh: Mesh, counts: np.ndarray) -> np.ndarray:
         owners[blank[found]] = beside[best][found]
         blank = blank[~found]
     return owners
+
+
+def _twins_of(mesh: Mesh, rows: np.ndarray) -> np.ndarray:
+    """`mesh.twins` of a few triangles, without the table of all: it takes longer than to read a
+    frame, [N, 3]."""
+    wanted = mesh.triangles[rows].astype(np.int64)
+    keys = (wanted[:, [1, 2, 0]] * mesh.vertex_count + wanted).reshape(-1)
+    order = np.argsort(keys)
+    tails = mesh.triangles.astype(np.int64)
+    edges = (tails * mesh.vertex_count + tails[:, [1, 2, 0]]).reshape(-1)
+    places = np.flatnonzero(np.isin(edges, keys))
+    found = order[np.searchsorted(keys, edges[places], sorter=order)]
+    twins = np.full(len(keys), -1, dtype=np.int32)
+    twins[found] = places
+    return twins.reshape(-1, 3)

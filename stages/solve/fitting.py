@@ -9,6 +9,7 @@ from stages.optimize import place_mesh
 from stages.snapshot import Snapshot
 from stages.solve.color_limits import Limiter
 from stages.solve.color_owners import color_owners
+from stages.solve.grid import colors_through, rounded_energies, shades, tightened
 from stages.solve.steady_colors import steadied
 from warp_kernels.energy.workspace import Workspace
 
@@ -41,15 +42,20 @@ class Fitting:
         if earlier is not None:
             coefficients, energies = steadied(earlier, mesh, counts, coefficients, energies)
         coefficients, energies, limits = self._limiter.limit(mesh, coefficients, energies)
+        model = self.workspace.model
+        values = shades(mesh, model, coefficients)
+        coefficients = colors_through(mesh, model, values)
+        if limits is not None:
+            limits = tightened(model, values, limits)
         owners = color_owners(mesh, counts)
         return Snapshot(
             frame_index=frame.index,
             pts=frame.pts,
             time_base=frame.time_base,
             mesh=mesh,
-            model=self.workspace.model,
+            model=model,
             coefficients=coefficients[owners],
-            energies=energies,
+            energies=rounded_energies(energies),
             counts=counts,
             limits=None if limits is None else limits[owners],
             locks=locks.within(mesh),

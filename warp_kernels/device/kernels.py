@@ -62,9 +62,35 @@ class Kernels:
         if kernel in self._ready:
             return
         self._awaited.setdefault(kernel)
-        modules = dict.fromkeys(awaited.module for awaited in self._awaited)
-        self._ready.update(self._awaited)
-        self._awaited.clear()
+        modules = self.take()
+        self._ready.update(modules)
+        self.build(modules)
+
+    @property
+    def are_awaited(self) -> bool:
+        """Whether kernels are expected of which it is not known that they are compiled."""
+        return not self._awaited.keys() <= self._ready
+
+    def take(self) -> dict[Any, Any]:
+        """The modules of all kernels that are expected, by kernel; they are expected no more."""
+        taken, self._awaited = self._awaited, {}
+        return {kernel: kernel.module for kernel in taken if kernel not in self._ready}
+
+    def settle(self, taken: dict[Any, Any]) -> None:
+        """Kernels were compiled by `build`.
+
+        Args:
+            taken: What `take` gave.
+        """
+        self._ready.update(taken)
+
+    def build(self, taken: dict[Any, Any]) -> None:
+        """Compile what is missing.
+
+        Args:
+            taken: What `take` gave.
+        """
+        modules = dict.fromkeys(taken.values())
         folder = _folder()
         # all names before the first compilation
         places = {module: folder / self._name(module) for module in modules}

@@ -1,0 +1,1 @@
+"""Arrays of a track as bytes, and back to the bit."""
