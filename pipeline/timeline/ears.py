@@ -3,15 +3,18 @@
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from pipeline.options.hearing import NOT_LISTENED, Hearing
 from pipeline.timeline.timeline import Timeline
 from stages.hearing.heard import Heard
-from stages.hearing.listening.listen import Listened, listen
 from stages.media import MediaInfo
 from warp_kernels.errors import MediaError
+
+if TYPE_CHECKING:
+    from stages.hearing.listening.listen import Listened
 
 Told = tuple[Heard | None, tuple[str, ...]]
 """What is heard, and what is to be told of it."""
@@ -74,8 +77,10 @@ def _listened(timeline: Timeline, hearing: Hearing, info: MediaInfo) -> Told:
 
 
 @lru_cache(maxsize=2)
-def _listen(path: Path, meter: int, _changed: int) -> Listened:
+def _listen(path: Path, meter: int, _changed: int) -> "Listened":
     """Listen once: plans, checks and drawings ask for the same sound."""
+    from stages.hearing.listening.listen import listen  # which takes a second to import
+
     return replace(listen(path, meter=meter), wave=_NOTHING)
 
 
