@@ -103,7 +103,12 @@ def _heard(arguments: argparse.Namespace, source: Path) -> Listened:
     if told is None:
         return found
     heard = found.heard.told_by(told.with_downbeats(arguments.meter))
-    return replace(found, heard=heard, notes=tuple(n for n in found.notes if n != NO_BEAT))
+    notes = tuple(n for n in found.notes if n != NO_BEAT)
+    if len(told.beats) == 1:
+        notes += (
+            f"{shown_name(Path(arguments.beats))} tells of one beat: those that are heard count",
+        )
+    return replace(found, heard=heard, notes=notes)
 
 
 def _told(heard: Heard, source: Path, written: Mapping[str, Path]) -> str:
