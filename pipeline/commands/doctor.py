@@ -34,8 +34,6 @@ SIZE = (96, 64)
 """Of the pictures of the test [px]."""
 FRAMES = 3
 """And their number."""
-QUICK = {"triangles": 60, "iterations": 20, "frame_iterations": 10}
-"""With what they are converted."""
 WORST = 25.0
 """Error that a film of them may have [code values]: it has half of it, and a grey one 70."""
 LEAST_SPACE = 1 << 30
@@ -146,4 +144,5 @@ def _film(folder: Path, film: Path) -> Result:
         picture = slope.copy()
         picture[20:40, 10 + 4 * number : 40 + 4 * number] = (220, 60, 30)
         (folder / f"in_{number:04d}.png").write_bytes(encode_still(picture, "png", None))
-    return animate(folder / "in_####.png", film, **QUICK)
+    stills = folder / "in_####.png"
+    return animate(stills, film, triangles=60, iterations=20, frame_iterations=10)
