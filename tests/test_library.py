@@ -67,6 +67,12 @@ def modules_after(statements: str) -> set[str]:
     return set(done.stdout.split())
 
 
+def test_a_conversion_starts_without_scipy() -> None:
+    """It takes as long to import as the first frame of a small picture takes to solve."""
+    names = modules_after("import pipeline.loop.animate, pipeline.loop.convert, pipeline.cli")
+    assert not {name for name in names if name.split(".")[0] == "scipy"}
+
+
 def test_import_is_light() -> None:
     """Importing it brings nothing else; looking at a function brings nothing heavy."""
     bare = modules_after("")

@@ -130,6 +130,21 @@ def test_triangles_without_a_pixel_are_not_black(
         assert (shown <= picture.max(axis=(0, 1)) + ROUNDING).all()
 
 
+def test_few_pixels_do_not_take_a_large_triangle_along(device: str) -> None:
+    """A dark corner of a bright half: all of it would turn dark for a hundredth of its pixels.
+
+    A past bug: a band of the sky turned green for twenty of its thirty thousand pixels.
+    """
+    picture = np.full((64, 64, 3), 200, dtype=np.uint8)
+    picture[:8, :8] = 20
+    corners = np.array([[0, 0], [64, 0], [64, 64], [0, 64]], dtype=float)
+    mesh = mesh_of(corners, np.array([[0, 1, 2], [0, 2, 3]]), 64, 64)
+    triangulator = Triangulator(Device(device, 2), (64, 64), TriangulateOptions())
+    snapshot = triangulator.fit(frame_of(picture), mesh)
+    assert (snapshot.coefficients > 190).all()
+    assert snapshot.rmse < picture.std()
+
+
 @pytest.mark.parametrize("name", STYLES)
 def test_no_style_shows_them_black(name: str, device: str) -> None:
     """Every style draws them as if they had a pixel of their own."""

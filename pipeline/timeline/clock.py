@@ -21,8 +21,8 @@ that place: containers round times."""
 NEAR_BAR = 0.05
 """A bar is near to a part of the film if it is no further away than this part of it."""
 NO_BEAT = (
-    "no beat is heard; give --audio SONG, --beats FILE (trimotion listen writes it), or write "
-    "bpm = 120 on top"
+    "no beat is heard; give --audio SONG, --beats FILE with two beats or more (trimotion listen "
+    "writes it), or write bpm = 120 on top"
 )
 """What to say where beats are counted and there are none."""
 
@@ -102,8 +102,11 @@ class Clock:
             before: The one before it [s].
 
         Raises:
-            OptionError: If it counts beats and there are none, or the end is unknown.
+            OptionError: If it counts beats or names a section and there are none, or the end is
+                unknown.
         """
+        if when.name:
+            return self._section(when.name)
         if when.share is not None:
             if self.end is None:
                 raise OptionError("the length of the source is unknown; write seconds or bars")
@@ -119,6 +122,25 @@ class Clock:
         if when.span.unit is Unit.FRAMES:
             return float((when.span.amount - self.first) / self.rate)
         return amount
+
+    def _section(self, name: str) -> float:
+        """When a section of the song begins [s]: `verse`, or `verse 2` for the second of that name.
+
+        Raises:
+            OptionError: If there is none.
+        """
+        marks = () if self.heard is None else self.heard.sections
+        first, _, count = name.rpartition(" ")
+        number = int(count) if first and count.isdecimal() and len(count) < 5 else 0
+        for wanted, place in ((name, 1), (first, number)):
+            times = sorted(mark.time for mark in marks if mark.name.lower() == wanted)
+            if 0 < place <= len(times):
+                return times[place - 1]
+        known = ", ".join(dict.fromkeys(mark.name for mark in marks)) or "none is named"
+        raise OptionError(
+            f"at {name}: the song has no such section ({known}); "
+            "name it in the file that --beats gives"
+        )
 
     def _nearest_bar(self, time: float) -> float:
         """The bar that is nearest to a time [s], or the beat, or itself if none is near."""

@@ -3,26 +3,31 @@
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from pipeline.options.hearing import NOT_LISTENED, Hearing
 from pipeline.timeline.timeline import Timeline
 from stages.hearing.heard import Heard
-from stages.hearing.listening.listen import Listened, listen
 from stages.media import MediaInfo
 from warp_kernels.errors import MediaError
 
+if TYPE_CHECKING:
+    from stages.hearing.listening.listen import Listened
+
 Told = tuple[Heard | None, tuple[str, ...]]
 """What is heard, and what is to be told of it."""
+NOTHING: Told = (None, ())
+"""Of a silent film."""
 
 
 def heard_for(timeline: Timeline, hearing: Hearing, info: MediaInfo) -> Told:
     """What a timeline hears; nothing if it needs nothing.
 
     Beats come from a file if one is named, else from the sound: the song, or the film's own. Where
-    there is no beat in it the timeline's tempo counts. Strengths and onsets of which such a file
-    does not tell come from the sound.
+    there is no beat in it the timeline's tempo counts. Beats, strengths and onsets of which such a
+    file does not tell come from the sound.
 
     Args:
         timeline: The timeline; `--beats` took the place of what it names.
@@ -33,30 +38,28 @@ def heard_for(timeline: Timeline, hearing: Hearing, info: MediaInfo) -> Told:
         MediaError: If the song cannot be read.
     """
     if not timeline.needs_sound:
-        return None, ()
+        return NOTHING
     told = timeline.beats
-    listens = told is None or (timeline.hears_strengths and not told.envelopes)
-    found, notes = _listened(timeline, hearing, info) if listens else (None, ())
-    if told is not None:
-        heard = told if found is None else found.told_by(told)
-        # a file of beats tells of the song, so it begins where the song does
-        heard = heard if hearing.song is None else heard.moved(hearing.audio_offset)
-        if timeline.hears_onsets and not len(heard.onsets):
-            notes += (f"{timeline.file}: its beats tell of no onset; give --audio SONG",)
+    found, notes = NOTHING
+    if told is None or not told.has_beats or (timeline.hears_strengths and not told.envelopes):
+        found, notes = _listened(timeline, hearing, info)
+    heard = found if found is None or told is None else found.told_by(told)
+    heard = heard or told
+    if heard is not None and hearing.song is not None:
+        heard = heard.moved(hearing.audio_offset)  # a file of beats begins where the song does
+    if told is not None and timeline.hears_onsets and heard is not None and not len(heard.onsets):
+        notes += (f"{timeline.file}: its beats tell of no onset; give --audio SONG",)
+    if timeline.bpm is None or (heard is not None and heard.has_beats):
         return heard, notes
-    if found is not None and hearing.song is not None:
-        found = found.moved(hearing.audio_offset)
-    if timeline.bpm is None or (found is not None and len(found.beats)):
-        return found, notes
     steady = Heard.steady(max(float(info.duration or 0), 1.0), timeline.bpm, timeline.meter)
-    return (steady if found is None else found.told_by(steady)), notes
+    return (steady if heard is None else heard.told_by(steady)), notes
 
 
 def _listened(timeline: Timeline, hearing: Hearing, info: MediaInfo) -> Told:
     """What is heard in the song, or in the film's own sound."""
     song = hearing.song
     if hearing.beats == NOT_LISTENED or (song is None and info.audio_codec is None):
-        return None, ()
+        return NOTHING
     path = info.path if song is None else song
     try:
         found = _listen(path, timeline.meter, path.stat().st_mtime_ns)
@@ -77,8 +80,10 @@ def _listened(timeline: Timeline, hearing: Hearing, info: MediaInfo) -> Told:
 
 
 @lru_cache(maxsize=2)
-def _listen(path: Path, meter: int, _changed: int) -> Listened:
+def _listen(path: Path, meter: int, _changed: int) -> "Listened":
     """Listen once: plans, checks and drawings ask for the same sound."""
+    from stages.hearing.listening.listen import listen  # which takes a second to import
+
     return replace(listen(path, meter=meter), wave=_NOTHING)
 
 

@@ -3,7 +3,6 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from stages.mesh import Mesh
 
@@ -30,6 +29,8 @@ class Matching:
             mesh: A mesh.
             other: Another one of the same picture.
         """
+        from scipy.spatial import cKDTree  # takes a second to import, and few jobs come here
+
         spacing = np.sqrt(mesh.width * mesh.height / mesh.vertex_count)
         distances, there = cKDTree(other.vertices).query(mesh.vertices)
         _, back = cKDTree(mesh.vertices).query(other.vertices)

@@ -9,8 +9,6 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from stages.hand.locks import Locks
 from stages.mesh import Mesh, areas_of, centres_of, heights_of, next_corner
@@ -45,6 +43,9 @@ class Meeting:
     def _islands(self) -> tuple[np.ndarray, np.ndarray, int]:
         """The island of each triangle of both meshes, -1 for those that they share, and how many
         islands there are."""
+        from scipy.sparse import coo_array  # takes a second to import, and few jobs come here
+        from scipy.sparse.csgraph import connected_components
+
         pair = self.one, self.other
         apart = self._apart
         sides = _common_sides(pair, apart, self._pairs)

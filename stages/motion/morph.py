@@ -3,8 +3,6 @@
 from dataclasses import replace
 
 import numpy as np
-from scipy.sparse import coo_array, diags_array
-from scipy.sparse.linalg import spsolve
 
 from stages.mesh import Mesh, centres_of
 from stages.motion.advect import sliding, unfolded
@@ -51,6 +49,9 @@ def _filled(mesh: Mesh, steps: np.ndarray, known: np.ndarray) -> np.ndarray:
         steps: Those of the known ones [px], [V, 2].
         known: Which are known, [V] bool, at least one.
     """
+    from scipy.sparse import coo_array, diags_array  # slow to import, and few jobs come here
+    from scipy.sparse.linalg import spsolve
+
     count = mesh.vertex_count
     one, other = mesh.edge_vertices.T
     ends = np.concatenate([one, other]), np.concatenate([other, one])

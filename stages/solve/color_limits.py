@@ -23,6 +23,10 @@ along y [px]: there an even slope goes on."""
 STEPS = (1.0, 1.0, 1.0, 1.0, 0.5, 0.5, 0.5, 0.5)
 """How much of what they ask for the worst pixels get, time after time: half of it at last, for two
 that cannot both have it meet in the middle."""
+DEAREST = 2.0
+"""Most that moved colours may leave, as a multiple of what the best ones do: the colour of the
+larger side of a border costs no more than that, and the smaller side is not followed at the expense
+of the larger."""
 UNKNOWN = 1e300
 """Bound for the energy of a triangle in a colour that is tried [code value^2 px]."""
 RIDGE = 1e-6
@@ -105,7 +109,8 @@ class Limiter:
         """Colours, and what they leave, of which fewer pixels look like nothing near them.
 
         Time after time the worst pixel of a triangle gets what it asks for, as the rest of the
-        triangle bears it best; the colours stay that leave the fewest such pixels.
+        triangle bears it best; the colours stay that leave the fewest such pixels, unless the rest
+        of the triangle would have to bear too much.
         """
         doubtful = energies
         if self._bands is not None:
@@ -114,8 +119,9 @@ class Limiter:
         rows = self.torn = np.flatnonzero(found.counts)
         if not len(rows):
             return coefficients, energies
-        coefficients, energies, moved = coefficients.copy(), energies.copy(), coefficients.copy()
-        least, told = found.counts, np.zeros(mesh.triangle_count)
+        best, had, least = coefficients, found.counts, found.counts
+        coefficients, energies, moved = best.copy(), energies.copy(), best.copy()
+        told = np.zeros(mesh.triangle_count)
         for step in STEPS:
             origins = centres_of(mesh.corners[rows])
             local = with_origins(self._workspace.model, moved[rows], origins)
@@ -127,9 +133,12 @@ class Limiter:
             least = np.minimum(least, found.counts)
             if not least.any():
                 break
-        self.torn = np.flatnonzero(least)
-        changed = told > 0
-        energies[changed] = self._nearby.measure(coefficients, told, limits).energies[changed]
+        left = self._nearby.measure(coefficients, told, limits).energies
+        dear = left > DEAREST * energies
+        coefficients[dear] = best[dear]
+        self.torn = np.flatnonzero(np.where(dear, had, least))
+        changed = (told > 0) & ~dear
+        energies[changed] = left[changed]
         return coefficients, energies
 
     def _corrections(self, mesh: Mesh, rows: np.ndarray, found: Departures) -> np.ndarray:
