@@ -3,7 +3,8 @@
     python -m benchmarks.edit_logs [--edits N] [--seeds N] [--clip CLIP] [--frames A-B]
 
 Stills first: a log of so many edits of one mesh. Then a clip: a log of so many edits over all its
-frames, solved twice, the second time from its lines on one thread, and without edits.
+frames, solved twice, the second time from its lines on one thread, and without edits: some two
+minutes of CPU time, for every frame is edited more than a hundred times.
 """
 
 import argparse
@@ -131,7 +132,7 @@ def main() -> None:
     parser.add_argument("--edits", type=int, default=2000)
     parser.add_argument("--seeds", type=int, default=3)
     parser.add_argument("--clip", type=Path, default=CLIP)
-    parser.add_argument("--frames", default="0-23")
+    parser.add_argument("--frames", default="0-11")
     given = parser.parse_args()
     for seed in range(given.seeds):
         check_still(seed, given.edits)

@@ -140,6 +140,13 @@ def test_a_ground_of_another_film_is_not_taken(session: Session, solved: Path) -
     assert not session.film.has_ground
 
 
+def test_frames_are_drawn_as_wide_as_they_are_seen(session: Session) -> None:
+    """While a film plays; never wider than it is."""
+    look = look_of(["flat"])
+    assert session.drawn(3, look, across=48).shape[1] == 48
+    assert session.drawn(3, look, across=9_999).shape == session.drawn(3, look).shape
+
+
 def test_thumbnails_are_small(session: Session) -> None:
     assert session.thumbnail(3).shape[2] == 3
     assert max(session.thumbnail(3).shape) <= 128

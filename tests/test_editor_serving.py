@@ -264,7 +264,7 @@ def test_edits_do_not_wait_for_kernels_of_a_style(
         assert goes_on.wait(30)
 
     # real need: kernels that are missing for as long as one likes
-    monkeypatch.setattr(server.studio.session, "prepare", lambda look: not goes_on.is_set())
+    monkeypatch.setattr(server.studio.session, "prepare", lambda *_: not goes_on.is_set())
     monkeypatch.setattr(server.studio.session, "compile_expected", wait)
     with connect(server.socket_url) as window:
         ask(window, "hello")

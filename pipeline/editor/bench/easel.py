@@ -76,19 +76,20 @@ class Easel:
         rng = np.random.default_rng([self._options.seed, frame.index])
         return self._triangulator(model).first(frame, self._options.layout, rng)
 
-    def prepare(self, look: Look, model: ColorModel) -> bool:
+    def prepare(self, look: Look, model: ColorModel, across: int = MOST_ACROSS) -> bool:
         """Make all that a look is drawn with.
 
         Args:
             look: The look.
             model: The colour model that it needs.
+            across: See `drawn`.
 
         Returns:
             Whether kernels may have to be compiled first: `Device.compile_expected` does it beside
             all else, and drawing at once would do it while everything waits.
         """
         self._triangulator(model)
-        look, framing = self._sized(look)
+        look, framing = self._sized(look, across)
         self._wardrobe(framing.picture, look).prepare(look)
         return self._device.awaits_kernels
 
@@ -99,8 +100,9 @@ class Easel:
         look: Look,
         time: float = 0.0,
         shares: np.ndarray | None = None,
+        across: int = MOST_ACROSS,
     ) -> np.ndarray:
-        """A frame as the output shows it, at most `MOST_ACROSS` wide.
+        """A frame as the output shows it.
 
         Args:
             snapshot: The triangles.
@@ -108,11 +110,12 @@ class Easel:
             look: How they are drawn.
             time: When it is shown [s].
             shares: Which followed regions of the look its triangles belong to, [T, R] uint8.
+            across: Widest picture [px], at most `MOST_ACROSS`.
 
         Returns:
             Code values, [rows, columns, 3 or 4] uint8.
         """
-        look, framing = self._sized(look)
+        look, framing = self._sized(look, across)
         source = None if frame is None else frame.pixels
         view = Posed(snapshot, None, source, {}, shares, None, {}, time)
         pixels = self._wardrobe(framing.picture, look).draw(look, view)
@@ -132,9 +135,10 @@ class Easel:
         view = Posed(snapshot, None, None, {}, None, None, {}, 0.0)
         return self._wardrobe(size, look).draw(look, view)
 
-    def _sized(self, look: Look) -> tuple[Look, Framing]:
+    def _sized(self, look: Look, across: int) -> tuple[Look, Framing]:
         """A look at the size of the page."""
-        look = replace(look, scale=min(1.0, MOST_ACROSS / self._size[0]), output_size=None)
+        scale = min(1.0, across / self._size[0], MOST_ACROSS / self._size[0])
+        look = replace(look, scale=scale, output_size=None)
         return look, look.framing_for(self._size, Fraction(1))
 
     def _wardrobe(self, size: tuple[int, int], look: Look) -> Wardrobe:

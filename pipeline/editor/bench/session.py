@@ -11,7 +11,7 @@ import numpy as np
 
 from pipeline.edit_log.journal import EditJournal
 from pipeline.edit_log.painted_regions import check_style, painted_regions
-from pipeline.editor.bench.easel import Easel
+from pipeline.editor.bench.easel import MOST_ACROSS, Easel
 from pipeline.editor.bench.film import SolvedFilm
 from pipeline.editor.bench.live import Descent, Live
 from pipeline.editor.bench.members import Members
@@ -168,29 +168,33 @@ class Session:
             self._fitted.popitem(last=False)
         return known[1]
 
-    def prepare(self, look: Look) -> bool:
+    def prepare(self, look: Look, across: int = MOST_ACROSS) -> bool:
         """Make all that a look is drawn with.
 
         Args:
             look: How frames are drawn.
+            across: Widest picture [px].
 
         Returns:
             See `Easel.prepare`.
         """
         look = painted_regions(self.log, self.film.frames).over(look)
-        return self.easel.prepare(look, look.fitted(self.easel.model))
+        return self.easel.prepare(look, look.fitted(self.easel.model), across)
 
     def compile_expected(self) -> None:
         """Compile what `prepare` found missing; in any thread, beside all else."""
         self._device.compile_expected()
 
-    def drawn(self, frame: int, look: Look, view: str = EDITED) -> np.ndarray:
+    def drawn(
+        self, frame: int, look: Look, view: str = EDITED, across: int = MOST_ACROSS
+    ) -> np.ndarray:
         """A frame as the output shows it, [rows, columns, 3 or 4] uint8.
 
         Args:
             frame: Its number.
             look: How it is drawn.
             view: One of `VIEWS`.
+            across: Widest picture [px].
 
         Raises:
             EditError: If the track holds no such frame.
@@ -203,7 +207,7 @@ class Session:
             snapshot = self.shown(frame, model, EDITED if view == LIVE else view)
         picture = self.picture(frame) if look.needs_source else None
         shares = self._members.shares(look, frame, snapshot, is_edited=view in (EDITED, LIVE))
-        return self.easel.drawn(snapshot, picture, look, self.film.time(frame), shares)
+        return self.easel.drawn(snapshot, picture, look, self.film.time(frame), shares, across)
 
     def thumbnail(self, frame: int) -> np.ndarray:
         """A small picture of a frame of the film, [rows, columns, 3] uint8."""

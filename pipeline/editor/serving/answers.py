@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from pipeline.edit_log.json_lines import log_of
 from pipeline.editor.bench.command_lines import render_line, solve_line
-from pipeline.editor.bench.easel import look_of
+from pipeline.editor.bench.easel import MOST_ACROSS, look_of
 from pipeline.editor.bench.errands import beside
 from pipeline.editor.bench.long_work import Applying, Rendering
 from pipeline.editor.bench.session import LIVE, VIEWS
@@ -23,6 +23,8 @@ MOST_EDITS = 1_000
 """Edits of one message."""
 MOST_STEPS = 1_000_000
 """Steps that the optimiser takes while nobody stops it."""
+LEAST_ACROSS = 64
+"""Narrowest picture that is drawn [px]."""
 MOST_STYLES = 16
 """Styles over one another."""
 
@@ -38,6 +40,7 @@ async def look_at(window: "Window", asked: Asked) -> Reply:
     """Show a frame, or parts of what is to be seen of it."""
     frame, view = asked.whole("frame"), asked.text("view", window.view)
     parts = asked.items("parts", ["picture", "mesh", "drawn"])
+    across = max(LEAST_ACROSS, asked.whole("across", MOST_ACROSS))
     if view not in VIEWS:
         raise AskError(f"look: it needs view, one of {', '.join(VIEWS)}")
     if frame not in window.studio.session.film:
@@ -47,7 +50,7 @@ async def look_at(window: "Window", asked: Asked) -> Reply:
     shows: dict[str, Callable[[], Awaitable[None]]] = {
         "picture": window.show_picture,
         "mesh": window.show_mesh,
-        "drawn": partial(window.show_drawn, at_once=True),
+        "drawn": partial(window.show_drawn, at_once=True, across=across),
     }
     for part in shows.keys() & set(map(str, parts)):
         await shows[part]()

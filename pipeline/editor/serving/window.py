@@ -10,7 +10,7 @@ from typing import Any
 
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
-from pipeline.editor.bench.easel import look_of
+from pipeline.editor.bench.easel import MOST_ACROSS, look_of
 from pipeline.editor.bench.live import Live
 from pipeline.editor.bench.session import EDITED, LIVE
 from pipeline.editor.bench.sketch import Sketch
@@ -101,24 +101,25 @@ class Window:
         """Have the frame drawn, soon: of what is asked for meanwhile the last counts."""
         self._undrawn.set()
 
-    async def show_drawn(self, *, at_once: bool = False) -> None:
+    async def show_drawn(self, *, at_once: bool = False, across: int = MOST_ACROSS) -> None:
         """Show the frame as the film shows it.
 
         Args:
             at_once: Whether who asks waits: where kernels have to be compiled it is shown later.
+            across: Widest picture [px].
         """
         frame, look = self.frame, self.look
         if self.sketch is not None:
             styles = look.shown_styles(self.studio.session.easel.model)
             look = replace(look, styles=(*styles, self.sketch))
-        if await self.studio.do(self.studio.session.prepare, look):
+        if await self.studio.do(self.studio.session.prepare, look, across):
             if at_once:
                 self.want_drawn()
                 return
             self.tell({"tell": "preparing", "is": True})
             await self.studio.compile_expected()
             self.tell({"tell": "preparing", "is": False})
-        drawn = await self.studio.do(self.studio.session.drawn, frame, look, self.view)
+        drawn = await self.studio.do(self.studio.session.drawn, frame, look, self.view, across)
         self.show("drawn", packed_pixels({"kind": "drawn", "frame": frame}, drawn))
 
     def optimise(self, course: Mapping[str, float], steps: int) -> None:

@@ -2,6 +2,8 @@
 const USUAL = 25;
 /** Frames that are asked for before the one before them is here. */
 const AHEAD = 3;
+/** Frames are as wide as a multiple of this [px]: every size needs memory of its own. */
+const SIZES = 64;
 
 /** Plays the film, as it is drawn, in its own time. */
 export class Player {
@@ -32,7 +34,7 @@ export class Player {
         ahead += 1;
         const parts = stage.opacities.mesh > 0 ? ["drawn", "mesh"] : ["drawn"];
         stage.connection
-          .ask("look", { frame, view: stage.view, parts })
+          .ask("look", { frame, view: stage.view, parts, across: this.across })
           .catch(() => (this.isOn = false))
           .finally(() => (ahead -= 1));
       }
@@ -41,6 +43,13 @@ export class Player {
     const isOver = this.isOn; // and nobody paused it
     this.isOn = false;
     await stage.seek(isOver ? stage.frames[stage.frames.length - 1] : stage.frame);
+  }
+
+  /** As wide as the screen has it, about: more is not seen, and takes longer. */
+  get across() {
+    const { camera, size } = this.stage;
+    const wide = size.width * camera.zoom * (devicePixelRatio || 1);
+    return Math.min(size.width, SIZES * Math.ceil(wide / SIZES));
   }
 
   pause() {
