@@ -5,6 +5,7 @@ import warp as wp
 
 from stages.mesh import Mesh
 from warp_kernels.device.device import Device
+from warp_kernels.drawing.band_lists import BandLists
 from warp_kernels.drawing.gbuffer import record_gbuffer
 
 
@@ -17,16 +18,17 @@ def triangle_of_pixels(device: Device, mesh: Mesh) -> np.ndarray:
     """
     vertices = device.empty(mesh.vertex_count, wp.vec2d)
     triangles = device.empty(mesh.triangle_count, wp.vec3i)
-    count = device.empty(1, int)
+    lists = BandLists(device, mesh.height, mesh.height)
     labels = device.empty((mesh.height, mesh.width), wp.int32)
     device.write(vertices, mesh.vertices)
     device.write(triangles, mesh.triangles)
-    device.write(count, np.array([mesh.triangle_count]))
+    lists.write(mesh.vertices, mesh.triangles, 1.0)
     phase = record_gbuffer(
         device,
         vertices=vertices,
         triangles=triangles,
-        count=count,
+        lists=lists,
+        band=0,
         scale=(1.0, 1.0),
         first_row=0,
         samples=1,
