@@ -222,6 +222,21 @@ def run_listen(arguments: argparse.Namespace) -> None:
         print(printable(told))
 
 
+def run_doctor(arguments: argparse.Namespace) -> int:
+    """Print what this machine has, and whether a conversion works on it.
+
+    Args:
+        arguments: What the user gave.
+    """
+    import json
+
+    from pipeline.commands.doctor import examine
+
+    found = examine()
+    print(json.dumps(found.as_dict(), indent=2) if arguments.json else found.as_lines())
+    return 0 if found.works else 1
+
+
 def run_completion(arguments: argparse.Namespace) -> None:
     """Print the script by which a shell completes the command line.
 
@@ -275,6 +290,7 @@ COMMANDS: dict[str, Command] = {
     "styles": run_styles,
     "timeline": run_timeline,
     "listen": run_listen,
+    "doctor": run_doctor,
     "completion": run_completion,
     "help": run_help,
 }

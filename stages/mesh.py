@@ -151,10 +151,16 @@ class Mesh:
         # ten times as fast as `vertices[triangles]`
         return self.vertices.take(self.triangles, axis=0)
 
+    def corner_columns(self) -> tuple[np.ndarray, np.ndarray]:
+        """Positions of the corners [px] as x and y, each of shape [3, T]: long rows add faster."""
+        rows = np.ascontiguousarray(self.triangles.T)
+        x, y = np.ascontiguousarray(self.vertices.T)
+        return x.take(rows), y.take(rows)
+
     @cached_property
     def areas(self) -> np.ndarray:
         """Signed area of each triangle [px^2], shape [T]."""
-        return _read_only(areas_of(self.corners))
+        return _read_only(_areas(*self.corner_columns()))
 
     @cached_property
     def heights(self) -> np.ndarray:
@@ -217,7 +223,10 @@ def areas_of(corners: np.ndarray) -> np.ndarray:
     Returns:
         Areas [px^2], shape [N].
     """
-    x, y = _columns(corners)
+    return _areas(*_columns(corners))
+
+
+def _areas(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     return 0.5 * ((x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0]))
 
 

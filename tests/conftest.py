@@ -1,5 +1,6 @@
 """What every test can ask for: a device, golden pictures, repeatable chance."""
 
+import gc
 import os
 import random
 import shutil
@@ -62,6 +63,11 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     """With `--emulated` only tests of the emulated card are left."""
     if config.getoption("--emulated"):
         items[:] = [item for item in items if "emulated" in item.name]
+
+
+def pytest_collection_finish() -> None:
+    """Spare the collector of garbage a look at thousands of tests, 0.2 s each time."""
+    gc.freeze()
 
 
 @pytest.fixture(scope="session", autouse=True)

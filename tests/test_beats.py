@@ -8,7 +8,7 @@ import pytest
 
 from stages.hearing.beats_file import read_beats, write_beats, write_labels
 from stages.hearing.contour import Contour
-from stages.hearing.heard import Heard, Mark
+from stages.hearing.heard import MOST_BEATS, Heard, Mark
 from warp_kernels.errors import MediaError, OptionError
 
 
@@ -157,6 +157,22 @@ def test_sections_of_an_edit_decision_list(tmp_path: Path) -> None:
     assert read_beats(tmp_path / "b.edl").sections[-1].time == pytest.approx(600, abs=0.02)
 
 
+@pytest.mark.parametrize(
+    ("text", "beats"),
+    [
+        ("0,5\n1,0\n1,5\n", [0.5, 1.0, 1.5]),
+        ("1,1\n2,2\n3,3\n", [1.0, 2.0, 3.0]),
+        ("0;1\n0,5;2\n", [0.0, 0.5]),
+    ],
+)
+def test_a_comma_is_a_decimal_or_parts_time_and_place(
+    tmp_path: Path, text: str, beats: list[float]
+) -> None:
+    """A file of `0,5`, `1,0` was read as times 0 and 1 with places in a bar."""
+    (tmp_path / "a.txt").write_text(text)
+    assert read_beats(tmp_path / "a.txt").beats.tolist() == beats
+
+
 BROKEN = {
     "a.json": ('{"beats": [1, "2"]}', "beats holds '2', which is not a number"),
     "b.json": ('{"beats": [2, 1]}', "beats go back from 2 to 1 s"),
@@ -176,6 +192,14 @@ BROKEN = {
         "rate of envelope low",
     ),
     "o.txt": ("9" * 400 + ":00:01\n", "holds no time"),
+    "p.txt": ("nan\n1\n", "line 1: 'nan' is not a time"),
+    "q.txt": ("-1\n0.5\n", "line 1: '-1' is not a time"),
+    "r.txt": ("2\n1\n0.5\n", "line 2: goes back from 2 to 1 s"),
+    "s.txt": ("".join(f"{n}\n" for n in range(MOST_BEATS + 1)), "holds more than 100000 times"),
+    "t.json": (
+        '{"beats": [0], "envelopes": {"low": {"rate": 10, "values": [0, 7]}}}',
+        "low holds 7; strengths go from 0 to 1",
+    ),
 }
 
 

@@ -266,3 +266,29 @@ def test_the_optimiser_goes_where_it_is_led(session: Session) -> None:
         session.optimise(0, {"trust_region": -1.0})
     session.undo()
     assert session.live is None
+
+
+def test_the_optimiser_goes_on_with_edits(session: Session) -> None:
+    """Edits are made in the mesh that is optimised and in the frame, or in neither."""
+    for _ in range(8):
+        session.optimise(0, {"triangles": 40})
+    brush = Insert(0, (40.0, 30.0), 15.0, 4, seed=3)
+    ghost = session.ghost(brush, in_live=True)
+    number = session.make([brush], after=0, in_live=True)
+    live = session.live
+    assert live is not None
+    fresh = live.worked.locks.vertices
+    at = live.worked.mesh.vertices[np.isin(live.worked.mesh.vertex_ids, fresh)]
+    assert np.array_equal(at, ghost.fresh)
+    session.optimise(0, {"triangles": 40})
+    assert session.live is live
+    assert live.steps == 9
+    assert_valid(live.worked.mesh)
+    assert np.array_equal(live.worked.locks.vertices, fresh)
+    before = live.worked
+    with pytest.raises(EditError, match="corner of the picture"):
+        session.make([CollapseVertex(0, (0.0, 0.0))], after=number, in_live=True)
+    assert live.worked is before
+    assert len(session.shown(0).locks.vertices) == len(fresh)
+    session.undo()
+    assert session.optimise(0, {"triangles": 40}).steps == 1

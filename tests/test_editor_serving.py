@@ -7,6 +7,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import ExitStack, closing
 from pathlib import Path
+from threading import Event
 from typing import Any
 
 import numpy as np
@@ -250,6 +251,32 @@ def test_two_windows_see_one_job(server: Served) -> None:
         late = ask(other, "edit", edits=[{**edit, "at": [70.0, 50.0]}], after=before)
         assert "another window went on" in late["error"]
         assert ask(other, "undo") == {"re": 1, "frame": 0}
+
+
+def test_edits_do_not_wait_for_kernels_of_a_style(
+    server: Served, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """They are compiled beside all else; the style is drawn once they are there."""
+    compiles, goes_on = Event(), Event()
+
+    def wait() -> None:
+        compiles.set()
+        assert goes_on.wait(30)
+
+    # real need: kernels that are missing for as long as one likes
+    monkeypatch.setattr(server.studio.session, "prepare", lambda look: not goes_on.is_set())
+    monkeypatch.setattr(server.studio.session, "compile_expected", wait)
+    with connect(server.socket_url) as window:
+        ask(window, "hello")
+        assert "error" not in ask(window, "look", frame=0)
+        ask(window, "style", styles=["flat"])
+        assert compiles.wait(30)
+        edit = {"edit": "split_triangle", "frame": 0, "at": [50.0, 30.0]}
+        assert "error" not in ask(window, "edit", edits=[edit])
+        assert "error" not in ask(window, "undo")
+        goes_on.set()
+        while not (isinstance(told := window.recv(timeout=30), bytes) and b'"drawn"' in told[:200]):
+            pass
 
 
 def test_a_killed_server_loses_nothing(tmp_path: Path) -> None:

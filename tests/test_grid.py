@@ -18,7 +18,7 @@ from pipeline.track.packing.compact import (
 from pipeline.track.packing.topologies import BaseTriangles, base_frame, pack_topology, topology_of
 from pipeline.track.packing.whole_numbers import is_whole, pack_whole, unpack_whole
 from stages.mesh import Mesh
-from stages.snapshot import colors_at
+from stages.snapshot import colors_at, colors_at_centres
 from stages.solve import grid
 from stages.solve.color_owners import _twins_of, color_owners
 from tests.kernel_samples import random_mesh
@@ -113,6 +113,19 @@ def test_limits_that_are_not_reached_change_nothing(mesh: Mesh, rng: np.random.G
         shown = colors_at(model, colors, points)
         wide, narrow = (np.clip(shown, b[:, 0], b[:, 1]) for b in (limits, tight))
         np.testing.assert_allclose(narrow, wide, atol=1e-9)
+
+
+def test_no_colour_lies_between_two_code_values(mesh: Mesh, rng: np.random.Generator) -> None:
+    """Where one way to draw rounds it up and another one down; whole ones stay what they are."""
+    for model in MODELS[:2]:
+        before = some_colors(mesh, model, rng)
+        before[:, :, 0] = np.floor(before[:, :, 0]) + 0.5 * (model.degree == 0)
+        colors = grid.rounded_colors(mesh, model, before)
+        shown = colors_at_centres(mesh, model, colors)
+        assert np.abs(shown - np.floor(shown) - 0.5).min() > 0.1 / grid.SHADES
+    plain = np.zeros_like(before)
+    plain[:, :, 0] = rng.integers(0, 256, plain.shape[:2])
+    np.testing.assert_array_equal(grid.rounded_colors(mesh, model, plain), plain)
 
 
 @pytest.mark.parametrize("width", range(1, 8))

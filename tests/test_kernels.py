@@ -25,6 +25,8 @@ from warp_kernels.device.cache_place import is_first_run
 from warp_kernels.device.device import Device
 from warp_kernels.device.kernel_turn import PATIENCE, waited_turn
 from warp_kernels.device.kernels import Kernels
+from warp_kernels.device.launcher import WarpLauncher
+from warp_kernels.device.runtime import WARP, quiet
 from warp_kernels.styles.flat import Flat
 
 
@@ -83,6 +85,53 @@ def test_all_that_are_expected_are_compiled_with_the_first(
     for kernel in (first, second, third):
         kernels.make_ready(kernel)
     assert cache.events == []
+
+
+def test_what_is_expected_is_compiled_beside_all_else(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The lock on Warp is free meanwhile; then nothing is left to do. A failure is made good."""
+    cache = Cache(tmp_path, monkeypatch)
+    compiles, goes_on = Event(), Event()
+
+    def wait(module: Any, device: Any, block_dim: int) -> None:
+        compiles.set()
+        assert goes_on.wait(10)
+        cache.load(module, device, block_dim)
+
+    # real need: a kernel that takes as long as one likes
+    monkeypatch.setattr(compiling.wp, "load_module", wait)
+    launcher = WarpLauncher(CPU, cache.tell)
+    launcher.expect([cache.kernel("a"), cache.kernel("b")])
+    assert launcher.awaits_kernels
+    other = Thread(target=launcher.compile_expected)
+    other.start()
+    assert compiles.wait(10)
+    assert WARP.acquire(timeout=10)
+    WARP.release()
+    assert not launcher.awaits_kernels
+    goes_on.set()
+    other.join(10)
+    assert {("compiled", "a"), ("compiled", "b")} <= set(cache.events)
+
+
+def test_quiet_lasts_until_the_last_has_left() -> None:
+    """Threads enter and leave in any order."""
+    usual, entered, leaves = wp.config.log_level, Event(), Event()
+
+    def stay() -> None:
+        with quiet():
+            entered.set()
+            assert leaves.wait(10)
+
+    other = Thread(target=stay)
+    with quiet():
+        other.start()
+        assert entered.wait(10)
+    assert wp.config.log_level >= wp.LOG_ERROR
+    leaves.set()
+    other.join(10)
+    assert wp.config.log_level == usual
 
 
 def test_nothing_is_told_where_all_are_compiled(

@@ -33,6 +33,7 @@ def smooth(shot: list[Snapshot], sigma: float, first_of_second: int | None = Non
 
 def test_few_frames_are_kept() -> None:
     """Those that a smooth frame depends on; memory does not grow with the clip."""
+    gc.freeze()  # of all that other tests have left nothing is looked at twenty times
     smoother, given, most = Smoother(0.6), [], 0
     for snapshot in (snapshot_with(two_triangles(), np.zeros((2, 3))) for _ in range(20)):
         given.append(weakref.ref(snapshot))

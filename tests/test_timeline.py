@@ -3,6 +3,7 @@
 import re
 import sys
 from collections.abc import Mapping
+from dataclasses import replace
 from fractions import Fraction
 from itertools import islice
 from pathlib import Path
@@ -17,13 +18,13 @@ from pipeline.timeline.easings import EASINGS, easing_name
 from pipeline.timeline.expression import parse_expression
 from pipeline.timeline.keyframes import Keyed, parse_keys
 from pipeline.timeline.mixing import mixed
-from pipeline.timeline.place import Place
 from pipeline.timeline.show import Show
 from pipeline.timeline.show_file import parse_timeline, read_timeline
 from pipeline.timeline.signals import Signals
 from pipeline.timeline.timeline import TEMPLATES, shipped_timelines
 from pipeline.timeline.times import parse_when
-from stages.hearing.heard import Heard
+from pipeline.timeline.written.place import Place
+from stages.hearing.heard import Heard, Mark
 from stages.media import probe
 from tests import media_samples as samples
 from warp_kernels.errors import OptionError
@@ -75,6 +76,18 @@ def signals_at(frames: np.ndarray, clock: Clock = CLOCK) -> Signals:
 )
 def test_times(text: str, seconds: float) -> None:
     assert CLOCK.time_of(parse_when(text), before=3.0) == pytest.approx(seconds, abs=1e-9)
+
+
+def test_sections_of_a_song_are_times() -> None:
+    """By their names, in any letters; the second of a name by its number."""
+    marks = (Mark(4.0, "Chorus"), Mark(9.0, "Verse 1"), Mark(12.0, "chorus"))
+    clock = Clock(Fraction(24), 0, 480, replace(Heard.steady(20.0, 120.0), sections=marks))
+    for text, seconds in (("at chorus", 4.0), ("at Verse 1", 9.0), ("at CHORUS 2", 12.0)):
+        assert clock.time_of(parse_when(text)) == seconds
+    with pytest.raises(OptionError, match=r"no such section \(Chorus, Verse 1, chorus\); name it"):
+        clock.time_of(parse_when("at chorus 3"))
+    with pytest.raises(OptionError, match="none is named"):
+        CLOCK.time_of(parse_when("at verse"))
 
 
 HUGE = ("{}s", "f{}", "b{}", "bar {}", "bar 1.{}", "{}%", "{}:00", "+{} bars")
@@ -311,6 +324,7 @@ def test_shipped_timelines_fit_films_of_any_length(name: str, seconds: int) -> N
     clock = Clock(Fraction(25), 0, 25 * seconds, Heard.steady(seconds, timeline.bpm or 120))
     show = Show(timeline, clock, (Look(), *(one.look for one in timeline.sections)))
     show.check(0, 25 * min(seconds, 20) - 1)
+    assert show.held(0, 25 * min(seconds, 20) - 1) == ()  # nothing leaves its bounds
     assert len(show.sections) == len(timeline.sections)
 
 

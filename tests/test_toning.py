@@ -199,7 +199,7 @@ def test_colours_of_a_picture(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("#123", "neither colours nor a file"),
+        ("#123", "one colour is no palette"),
         ("sunsett", "did you mean sunset"),
         ("#12,#fff", "colour '#12'"),
         ("none.gpl", "none.gpl: cannot be read"),

@@ -63,6 +63,7 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
         "listen clip.mp4 --labels beats.txt --bpm 120",
         "listen song.flac --beats beats.txt -o song.beats.json --overwrite",
     ),
+    "doctor": ("doctor", "doctor --json"),
     "completion": (
         "completion bash > ~/.local/share/bash-completion/completions/trimotion",
         "completion zsh > ~/.zfunc/_trimotion",

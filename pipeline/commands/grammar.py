@@ -102,6 +102,7 @@ def build_parser() -> OneLineParser:
     _add_styles(commands)
     _add_timeline(commands)
     _add_listen(commands)
+    _add_doctor(commands)
     _add_completion(commands)
     _add_help(commands)
     return parser
@@ -328,6 +329,17 @@ def _add_timeline(commands: Any) -> None:
 def _add_listen(commands: Any) -> None:
     parser = _command(commands, "listen", LISTEN_ABOUT, LISTEN_USAGE)
     add_listen_options(parser)
+
+
+def _add_doctor(commands: Any) -> None:
+    parser = _command(
+        commands,
+        "doctor",
+        "Print what this machine has that conversions need, and make a small film on it; exit code "
+        "1 if that does not work.",
+        "trimotion doctor [--json]",
+    )
+    parser.add_argument("--json", action="store_true", help="print JSON")
 
 
 def _add_completion(commands: Any) -> None:

@@ -14,6 +14,7 @@ commands:
   styles [NAME]              styles and moves with their parameters; --sheet draws them
   timeline SHOW.toml|NAME --check CLIP   what a timeline does when, without solving
   listen SONG|CLIP -o SONG.beats.json   beats, bars, onsets and strengths of a sound
+  doctor                     what this machine has, and whether a conversion works on it
   completion bash|zsh|fish   a script by which a shell completes all of this
   help [COMMAND]             this text, or the options of a command
 

@@ -76,9 +76,20 @@ def _colors(what: str, count: int | None) -> tuple[tuple[Color, ...], bool]:
     if what in PALETTES:
         return tuple(parse_color(color) for color in PALETTES[what]), True
     words = [word for word in re.split(r"[,;\s]+", what.strip()) if word]
+    if len(words) == 1 and _is_color(words[0]):
+        raise OptionError(f"one colour is no palette; write {words[0]},white, or more of them")
     if len(words) < 2:
         raise OptionError(f"neither colours nor a file: {_remedy(what)}")
     return tuple(parse_color(word) for word in words), True
+
+
+def _is_color(word: str) -> bool:
+    """Whether a word is a colour."""
+    try:
+        parse_color(word)
+    except OptionError:
+        return False
+    return True
 
 
 def _remedy(what: str) -> str:

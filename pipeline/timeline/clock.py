@@ -21,8 +21,8 @@ that place: containers round times."""
 NEAR_BAR = 0.05
 """A bar is near to a part of the film if it is no further away than this part of it."""
 NO_BEAT = (
-    "no beat is heard; give --audio SONG, --beats FILE (trimotion listen writes it), or write "
-    "bpm = 120 on top"
+    "no beat is heard; give --audio SONG, --beats FILE with two beats or more (trimotion listen "
+    "writes it), or write bpm = 120 on top"
 )
 """What to say where beats are counted and there are none."""
 
@@ -102,8 +102,11 @@ class Clock:
             before: The one before it [s].
 
         Raises:
-            OptionError: If it counts beats and there are none, or the end is unknown.
+            OptionError: If it counts beats or names a section and there are none, or the end is
+                unknown.
         """
+        if when.name:
+            return self._section(when.name)
         if when.share is not None:
             if self.end is None:
                 raise OptionError("the length of the source is unknown; write seconds or bars")
@@ -119,6 +122,25 @@ class Clock:
         if when.span.unit is Unit.FRAMES:
             return float((when.span.amount - self.first) / self.rate)
         return amount
+
+    def _section(self, name: str) -> float:
+        """When a section of the song begins [s]: `verse`, or `verse 2` for the second of that name.
+
+        Raises:
+            OptionError: If there is none.
+        """
+        marks = () if self.heard is None else self.heard.sections
+        first, _, count = name.rpartition(" ")
+        number = int(count) if first and count.isdecimal() and len(count) < 5 else 0
+        for wanted, place in ((name, 1), (first, number)):
+            times = sorted(mark.time for mark in marks if mark.name.lower() == wanted)
+            if 0 < place <= len(times):
+                return times[place - 1]
+        known = ", ".join(dict.fromkeys(mark.name for mark in marks)) or "none is named"
+        raise OptionError(
+            f"at {name}: the song has no such section ({known}); "
+            "name it in the file that --beats gives"
+        )
 
     def _nearest_bar(self, time: float) -> float:
         """The bar that is nearest to a time [s], or the beat, or itself if none is near."""
@@ -150,22 +172,23 @@ class Clock:
         """A time as people say it, for messages and tables: `0:12.50`, and its bar if it has one.
 
         Args:
-            time: [s]
+            time: [s]; less than 0 before the film begins: `-0:01.00`.
         """
-        minutes, seconds = divmod(round(time, 2), 60)
-        text = f"{int(minutes)}:{seconds:05.2f}"
-        if self.heard is None or not self.heard.has_beats:
-            return text
-        return f"{text} bar {self.bar_name(time)}"
+        minutes, seconds = divmod(abs(round(time, 2)), 60)
+        text = f"{'-' if round(time, 2) < 0 else ''}{int(minutes)}:{seconds:05.2f}"
+        bar = "" if self.heard is None or not self.heard.has_beats else self.bar_name(time)
+        return f"{text} bar {bar}" if bar else text
 
     def bar_name(self, time: float) -> str:
-        """The bar and the beat of a time, such as `9.3`; of one before the first bar its beat.
+        """The bar and the beat of a time, such as `9.3`; none before the first bar.
 
         Args:
             time: [s]
         """
         beats = self.beats
         bar = int(np.floor(float(beats.bar_at(time)) + 1e-3))
+        if bar < 1:  # bars count from 1, and no other can be written
+            return ""
         start = float(beats.beat_at(beats.time_of_bar(bar)))
         beat = float(beats.beat_at(time)) - start + 1
         return f"{bar}" if abs(beat - 1) < 0.02 else f"{bar}.{round(beat, 2):g}"

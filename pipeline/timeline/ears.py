@@ -18,14 +18,16 @@ if TYPE_CHECKING:
 
 Told = tuple[Heard | None, tuple[str, ...]]
 """What is heard, and what is to be told of it."""
+NOTHING: Told = (None, ())
+"""Of a silent film."""
 
 
 def heard_for(timeline: Timeline, hearing: Hearing, info: MediaInfo) -> Told:
     """What a timeline hears; nothing if it needs nothing.
 
     Beats come from a file if one is named, else from the sound: the song, or the film's own. Where
-    there is no beat in it the timeline's tempo counts. Strengths and onsets of which such a file
-    does not tell come from the sound.
+    there is no beat in it the timeline's tempo counts. Beats, strengths and onsets of which such a
+    file does not tell come from the sound.
 
     Args:
         timeline: The timeline; `--beats` took the place of what it names.
@@ -36,34 +38,35 @@ def heard_for(timeline: Timeline, hearing: Hearing, info: MediaInfo) -> Told:
         MediaError: If the song cannot be read.
     """
     if not timeline.needs_sound:
-        return None, ()
+        return NOTHING
     told = timeline.beats
-    listens = told is None or (timeline.hears_strengths and not told.envelopes)
-    found, notes = _listened(timeline, hearing, info) if listens else (None, ())
-    if told is not None:
-        heard = told if found is None else found.told_by(told)
-        # a file of beats tells of the song, so it begins where the song does
-        heard = heard if hearing.song is None else heard.moved(hearing.audio_offset)
-        if timeline.hears_onsets and not len(heard.onsets):
-            notes += (f"{timeline.file}: its beats tell of no onset; give --audio SONG",)
+    found, notes = NOTHING
+    if told is None or not told.has_beats or (timeline.hears_strengths and not told.envelopes):
+        found, notes = _listened(timeline, hearing, info)
+    heard = found if found is None or told is None else found.told_by(told)
+    heard = heard or told
+    if heard is not None and hearing.song is not None:
+        heard = heard.moved(hearing.audio_offset)  # a file of beats begins where the song does
+    if told is not None and timeline.hears_onsets and heard is not None and not len(heard.onsets):
+        notes += (f"{timeline.file}: its beats tell of no onset; give --audio SONG",)
+    if timeline.bpm is None or (heard is not None and heard.has_beats):
         return heard, notes
-    if found is not None and hearing.song is not None:
-        found = found.moved(hearing.audio_offset)
-    if timeline.bpm is None or (found is not None and len(found.beats)):
-        return found, notes
     steady = Heard.steady(max(float(info.duration or 0), 1.0), timeline.bpm, timeline.meter)
-    return (steady if found is None else found.told_by(steady)), notes
+    return (steady if heard is None else heard.told_by(steady)), notes
 
 
 def _listened(timeline: Timeline, hearing: Hearing, info: MediaInfo) -> Told:
     """What is heard in the song, or in the film's own sound."""
     song = hearing.song
     if hearing.beats == NOT_LISTENED or (song is None and info.audio_codec is None):
-        return None, ()
+        return NOTHING
     path = info.path if song is None else song
     try:
         found = _listen(path, timeline.meter, path.stat().st_mtime_ns)
     except (MediaError, OSError) as error:
+        if isinstance(error, OSError) and song is not None:
+            reason = str(error.strerror or error).lower()
+            raise MediaError(song, f"cannot be read ({reason})", "check the name") from error
         if song is not None:
             raise
         return None, (f"the film's sound is not heard: {error}",)

@@ -1,4 +1,4 @@
-"""Times as people write them: `12.5s`, `1:02.5`, `f240`, `b32`, `bar 9.3`, `50%`, `+4 bars`."""
+"""Times as people write them: `12.5s`, `1:02.5`, `f240`, `b32`, `bar 9.3`, `50%`, `+4 bars`, ..."""
 
 import re
 from dataclasses import dataclass
@@ -13,7 +13,10 @@ _BEAT = re.compile(rf"b(?:eat)? *{_NUMBER}")
 _BAR = re.compile(r"bar *(\d+)(?:\.(\d+(?:\.\d+)?))?")
 _SHARE = re.compile(rf"(bar at )? *{_NUMBER} *%")
 
-FORM = "write 12.5s, 1:02.5, f240, b32, bar 9, bar 9.3, 50%, bar at 50%, start, end, or +4 bars"
+FORM = (
+    "write 12.5s, 1:02.5, f240, b32, bar 9, bar 9.3, 50%, bar at 50%, start, end, at chorus, "
+    "or +4 bars"
+)
 """How times are written, for messages."""
 SPAN_FORM = "write 2s, 250ms, 12 frames, 1 beat or 4 bars"
 """How spans of time are written, for messages."""
@@ -65,11 +68,13 @@ class When:
     """The part of the film after which it is, in place of a length of time."""
     is_on_bar: bool = False
     """Whether it is a bar or a beat near to that, if there is one."""
+    name: str = ""
+    """Small letters of the section of the song with which it comes, in place of all that."""
 
     @property
     def needs_beats(self) -> bool:
         """Whether something must be heard to know when it is."""
-        return self.span.unit.needs_beats or self.is_on_bar
+        return self.span.unit.needs_beats or self.is_on_bar or bool(self.name)
 
 
 START = When(Span(Fraction(0), Unit.SECONDS))
@@ -90,6 +95,8 @@ def parse_when(text: str) -> When:
         return When(parse_span(plain[1:].strip()), is_relative=True)
     if plain in ("start", "0"):
         return START
+    if plain.startswith("at "):
+        return When(START.span, name=plain[3:])
     if plain == "end":
         return When(START.span, share=Fraction(1))
     found = _clock(plain) or _bar(plain) or _share(plain)

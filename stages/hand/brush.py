@@ -87,7 +87,7 @@ def with_points(worked: Worked, points: Iterator[Point], count: int, *, lock: bo
     Raises:
         EditError: If not one fits.
     """
-    mesh, locks = worked.mesh, worked.locks
+    mesh, split = worked.mesh, []
     misses = 0
     while count > 0 and misses < MISSES:
         misses += 1
@@ -100,7 +100,7 @@ def with_points(worked: Worked, points: Iterator[Point], count: int, *, lock: bo
         parts = np.stack([np.stack([corners[i], corners[(i + 1) % 3], place[0]]) for i in range(3)])
         if heights_of(parts).min() < LOWEST:
             continue
-        locks = locks.without(bare=mesh.triangle_ids[triangle])
+        split.append(mesh.triangle_ids[triangle])
         mesh = split_triangles(mesh, triangle, place)
         count, misses = count - 1, 0
     fresh = worked.fresh_vertices(mesh)
@@ -109,6 +109,7 @@ def with_points(worked: Worked, points: Iterator[Point], count: int, *, lock: bo
             f"not one vertex fits between those at ({point[0]:g}, {point[1]:g}); use a larger brush"
         )
     mesh = _settled(worked, mesh)
+    locks = worked.locks.without(bare=np.concatenate(split))
     return worked.became(mesh, locks.adding(vertices=fresh) if lock else locks)
 
 

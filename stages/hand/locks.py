@@ -80,9 +80,9 @@ class Locks:
         pairs = np.sort(np.asarray(edges, dtype=np.int64).reshape(-1, 2), axis=1)
         going = (self.edges[:, None] == pairs[None]).all(axis=2).any(axis=1)
         return Locks(
-            np.setdiff1d(self.vertices, vertices),
+            self.vertices[~np.isin(self.vertices, vertices)],
             self.edges[~going],
-            np.setdiff1d(self.bare, bare),
+            self.bare[~np.isin(self.bare, bare)],
         )
 
     def joined(self, other: "Locks") -> "Locks":
@@ -101,12 +101,15 @@ class Locks:
         """
         if self.is_empty:
             return self
-        known = _edge_keys(mesh, mesh.vertex_ids[mesh.edge_vertices])
+        edges = self.edges
+        if len(edges):
+            known = _edge_keys(mesh, mesh.vertex_ids[mesh.edge_vertices])
+            edges = edges[np.isin(_edge_keys(mesh, edges), known)]
         return replace(
             self,
-            vertices=np.intersect1d(self.vertices, mesh.vertex_ids),
-            edges=self.edges[np.isin(_edge_keys(mesh, self.edges), known)],
-            bare=np.intersect1d(self.bare, mesh.triangle_ids),
+            vertices=self.vertices[np.isin(self.vertices, mesh.vertex_ids)],
+            edges=edges,
+            bare=self.bare[np.isin(self.bare, mesh.triangle_ids)],
         )
 
     def held(self, mesh: Mesh) -> Held:

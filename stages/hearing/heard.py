@@ -15,6 +15,8 @@ from stages.hearing.contour import Contour
 from stages.hearing.scale import Scale, evenly_on
 from warp_kernels.errors import OptionError
 
+MOST_BEATS = 100_000
+"""Beats of a file at most: days of music."""
 USUAL_METER = 4
 """Beats of a bar where nothing says how many there are."""
 _NEAR = 8

@@ -10,6 +10,9 @@ if TYPE_CHECKING:
 
     from stages.moves.pose import Pose, Resting
 
+MOST_MARGIN = 0.25
+"""Waves are held back no farther from the border than this part of the shorter side."""
+
 
 @dataclass(frozen=True)
 class Wave(Move):
@@ -69,7 +72,8 @@ class Wave(Move):
         direction, phase = self._phase(resting, pose.corners)
         away = height * np.sin(phase)[..., None] * direction
         if not self.free:
-            away *= within(resting.corners, resting.size, max(4.0 * height, 1.0))
+            margin = min(max(4.0 * height, 1.0), MOST_MARGIN * resting.shorter)
+            away *= within(resting.corners, resting.size, margin)
         _, middle = self._phase(resting, pose.corners.mean(axis=1))
         light = 1.0 + min(amount, 1.0) * self.shine * np.cos(middle)
         return replace(pose, corners=pose.corners + away).shown(light=light)

@@ -40,13 +40,15 @@ def color_owners(mesh: Mesh, counts: np.ndarray) -> np.ndarray:
 def _twins_of(mesh: Mesh, rows: np.ndarray) -> np.ndarray:
     """`mesh.twins` of a few triangles, without the table of all: it takes longer than to read a
     frame, [N, 3]."""
-    wanted = mesh.triangles[rows].astype(np.int64)
-    keys = (wanted[:, [1, 2, 0]] * mesh.vertex_count + wanted).reshape(-1)
-    order = np.argsort(keys)
-    tails = mesh.triangles.astype(np.int64)
+    there = mesh.triangles[rows].astype(np.int64)
+    marks = np.zeros(mesh.vertex_count, dtype=np.int8)
+    marks[there] = 1
+    beside = marks.take(mesh.triangles)
+    near = np.flatnonzero(beside[:, 0] + beside[:, 1] + beside[:, 2] >= 2)
+    tails = mesh.triangles[near].astype(np.int64)
     edges = (tails * mesh.vertex_count + tails[:, [1, 2, 0]]).reshape(-1)
-    places = np.flatnonzero(np.isin(edges, keys))
-    found = order[np.searchsorted(keys, edges[places], sorter=order)]
-    twins = np.full(len(keys), -1, dtype=np.int32)
-    twins[found] = places
+    order = np.argsort(edges)
+    wanted = (there[:, [1, 2, 0]] * mesh.vertex_count + there).reshape(-1)
+    places = order[np.minimum(np.searchsorted(edges, wanted, sorter=order), len(edges) - 1)]
+    twins = np.where(edges[places] == wanted, 3 * near[places // 3] + places % 3, -1)
     return twins.reshape(-1, 3)

@@ -10,13 +10,16 @@ else, so all machines agree.
 import numpy as np
 
 from stages.mesh import Mesh
-from warp_kernels.color_model import ColorModel
+from warp_kernels.color_model import CHANNELS, ColorModel
 
 PLACES = 1 << 16
 """Steps of a position in a pixel: 256 of them are what decides whether a pixel is covered."""
-SHADES = 64
+SHADES = 63
 """Steps of a colour in a code value: no place of a triangle is off by more than half of one in a
-linear colour."""
+linear colour. An odd number of them has whole code values among them and no halves, of which no two
+ways to round to code values would have to agree."""
+Parts = tuple[np.ndarray, ...]
+"""Numbers of the triangles, each [T]."""
 DROPPED = 7
 """Last bits of a single-precision energy that are zero: 2^-17 of its value at most."""
 
@@ -73,7 +76,7 @@ def shades(mesh: Mesh, model: ColorModel, coefficients: np.ndarray) -> np.ndarra
     terms = np.ascontiguousarray(coefficients.transpose(2, 1, 0))
     if model.degree == 0:
         return np.rint(terms * SHADES) + 0.0  # no zero has a sign
-    x, y = _corners(mesh)
+    x, y = mesh.corner_columns()
     if model.degree == 2:
         x, y = (np.concatenate([n, 0.5 * (n + n[[1, 2, 0]])]) for n in (x, y))
     powers = {(1, 0): x, (0, 1): y, (2, 0): x * x, (1, 1): x * y, (0, 2): y * y}
@@ -94,10 +97,11 @@ def colors_through(mesh: Mesh, model: ColorModel, values: np.ndarray) -> np.ndar
     Returns:
         Coefficients as in a snapshot, [T, 3, K].
     """
-    values = values * (1.0 / SHADES)
-    if model.degree:
-        values = _about_the_origin(mesh, values, is_linear=model.degree == 1)
-    return side_by_side(values.swapaxes(0, 1))
+    found = np.empty((mesh.triangle_count, CHANNELS, model.term_count))
+    nodes = Nodes(mesh, model)
+    for channel in range(CHANNELS):  # a channel of many triangles is as much as caches hold
+        nodes.fit(values[:, channel], found[:, channel])
+    return found
 
 
 def value_range(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -106,13 +110,13 @@ def value_range(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     Those of linear colours lie between them everywhere.
 
     Args:
-        values: As `shades` gives them, [K, 3, T].
+        values: As `shades` gives them, [K, ...].
 
     Returns:
-        Lowest and highest, from 0 to 255, each [3, T].
+        Lowest and highest, from 0 to 255, each [...].
     """
     lowest, highest = values.min(axis=0), values.max(axis=0)
-    bounds = np.floor(lowest * (1.0 / SHADES)), np.ceil(highest * (1.0 / SHADES))
+    bounds = np.floor(lowest / SHADES), np.ceil(highest / SHADES)
     return np.clip(bounds[0], 0.0, 255.0), np.clip(bounds[1], 0.0, 255.0)
 
 
@@ -135,57 +139,70 @@ def tightened(model: ColorModel, values: np.ndarray, limits: np.ndarray) -> np.n
     return np.stack(bounds, axis=1).astype(np.uint8)
 
 
-def side_by_side(planes: np.ndarray) -> np.ndarray:
-    """Numbers of triangles that lie in planes, [M, N, T] as [T, M, N]: in a tenth of the time that
-    NumPy takes, which goes from triangle to triangle."""
-    M, N, T = planes.shape
-    rows = np.empty((T, M, N), dtype=planes.dtype)
-    for m in range(M):
-        for n in range(N):
-            rows[:, m, n] = planes[m, n]
-    return rows
+class Nodes:
+    """Turns values at the nodes of triangles into coefficients, one channel at a time.
+
+    Args:
+        mesh: The triangles.
+        model: Fixes the terms.
+    """
+
+    def __init__(self, mesh: Mesh, model: ColorModel) -> None:
+        self._degree = model.degree
+        if model.degree:
+            x, y = mesh.corner_columns()
+            self._origin = x[0], y[0]
+            self._frame = _frame(x, y)
+
+    def fit(self, values: np.ndarray, out: np.ndarray) -> None:
+        """Find the coefficients of one channel.
+
+        Args:
+            values: As `shades` gives them, [K, T].
+            out: Receives them as a snapshot has them, [T, K].
+        """
+        terms: Parts = (values[0],)
+        if self._degree:
+            polynomial = _linear if self._degree == 1 else _quadratic
+            terms = polynomial(values, self._frame, self._origin)
+        for term, numbers in enumerate(terms):
+            np.divide(numbers, SHADES, out=out[:, term])
 
 
-def _corners(mesh: Mesh) -> tuple[np.ndarray, np.ndarray]:
-    """Positions of the corners, x and y, each [3, T]."""
-    rows = np.ascontiguousarray(mesh.triangles.T)
-    x, y = np.ascontiguousarray(mesh.vertices.T)
-    return x.take(rows), y.take(rows)
+def _frame(x: np.ndarray, y: np.ndarray) -> Parts:
+    """How a position, from corner 0 on, is s of side 0-1 and t of side 0-2.
 
+    Args:
+        x: Of corners [px], [3, T].
+        y: Of corners [px], [3, T].
 
-def _about_the_origin(mesh: Mesh, values: np.ndarray, *, is_linear: bool) -> np.ndarray:
-    """Values at nodes as coefficients of x^a y^b, both [K, 3, T]."""
-    x, y = _corners(mesh)
+    Returns:
+        sx, sy, tx, ty with s = sx x + sy y and t = tx x + ty y, each [T].
+    """
     e1x, e1y, e2x, e2y = x[1] - x[0], y[1] - y[0], x[2] - x[0], y[2] - y[0]
     twice = e1x * e2y - e2x * e1y
-    # from corner 0 on a position is s of side 0-1 and t of side 0-2, s = sx x + sy y, t alike
-    sx, sy, tx, ty = e2y / twice, -e2x / twice, -e1y / twice, e1x / twice
-    x0, y0 = x[0], y[0]
-    found = np.empty_like(values)
-    if is_linear:
-        a, b = values[1] - values[0], values[2] - values[0]
-        for slope, along, aside in ((found[1], sx, tx), (found[2], sy, ty)):
-            np.multiply(a, along, out=slope)
-            slope += b * aside
-        np.multiply(found[1], x0, out=found[0])
-        np.subtract(values[0], found[0], out=found[0])
-        found[0] -= found[2] * y0
-        return found
-    a, b, c, d, e = _local(values)
+    return e2y / twice, -e2x / twice, -e1y / twice, e1x / twice
+
+
+def _linear(values: np.ndarray, frame: Parts, origin: Parts) -> Parts:
+    """Coefficients of 1, x, y of what has some values at the corners, each [T]."""
+    (sx, sy, tx, ty), (x0, y0) = frame, origin
+    a, b = values[1] - values[0], values[2] - values[0]
+    gx, gy = a * sx + b * tx, a * sy + b * ty
+    return values[0] - gx * x0 - gy * y0, gx, gy
+
+
+def _quadratic(values: np.ndarray, frame: Parts, origin: Parts) -> Parts:
+    """Coefficients of 1, x, y, x^2, x y, y^2, by the middles of the sides as well, each [T]."""
+    (sx, sy, tx, ty), (x0, y0) = frame, origin
+    v0, v1, v2, m01, m12, m20 = values
+    # of s, t, s^2, s t and t^2
+    a, c = 4.0 * m01 - 3.0 * v0 - v1, 2.0 * (v0 + v1) - 4.0 * m01
+    b, e = 4.0 * m20 - 3.0 * v0 - v2, 2.0 * (v0 + v2) - 4.0 * m20
+    d = 4.0 * (m12 - v0) - 2.0 * (a + b) - c - e
     gx, gy = a * sx + b * tx, a * sy + b * ty
     xx = c * sx * sx + d * sx * tx + e * tx * tx
     xy = 2.0 * (c * sx * sy + e * tx * ty) + d * (sx * ty + sy * tx)
     yy = c * sy * sy + d * sy * ty + e * ty * ty
-    found[0] = values[0] - gx * x0 - gy * y0 + xx * x0 * x0 + xy * x0 * y0 + yy * y0 * y0
-    found[1], found[2] = gx - 2.0 * xx * x0 - xy * y0, gy - 2.0 * yy * y0 - xy * x0
-    found[3], found[4], found[5] = xx, xy, yy
-    return found
-
-
-def _local(values: np.ndarray) -> tuple[np.ndarray, ...]:
-    """Coefficients of s, t, s^2, s t and t^2 for shares s, t of two sides, each [3, T]."""
-    v0, v1, v2, m01, m12, m20 = values
-    a, c = 4.0 * m01 - 3.0 * v0 - v1, 2.0 * (v0 + v1) - 4.0 * m01
-    b, e = 4.0 * m20 - 3.0 * v0 - v2, 2.0 * (v0 + v2) - 4.0 * m20
-    d = 4.0 * (m12 - v0) - 2.0 * (a + b) - c - e
-    return a, b, c, d, e
+    one = values[0] - gx * x0 - gy * y0 + xx * x0 * x0 + xy * x0 * y0 + yy * y0 * y0
+    return one, gx - 2.0 * xx * x0 - xy * y0, gy - 2.0 * yy * y0 - xy * x0, xx, xy, yy

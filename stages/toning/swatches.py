@@ -40,7 +40,8 @@ def read_swatches(path: Path) -> tuple[Color, ...]:
     except OSError as error:
         raise MediaError(path, f"cannot be read ({str(error.strerror).lower()})", FORM) from error
     except (ValueError, OptionError, struct.error, RecursionError) as error:
-        reason = " ".join(str(error).split()) or "it ends too early"
+        cut = isinstance(error, struct.error) or not str(error).strip()
+        reason = "it ends too early" if cut else " ".join(str(error).split())
         raise MediaError(path, f"is no palette ({reason[:120]})", FORM) from error
     if not 2 <= len(found) <= MOST_COLORS:
         count = "no colour" if not found else f"{len(found)} colours"

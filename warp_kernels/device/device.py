@@ -89,6 +89,16 @@ class Device:
         with WARP:
             self._launcher.expect(kernels)
 
+    @property
+    def awaits_kernels(self) -> bool:
+        """Whether kernels are expected that may not be compiled yet."""
+        with WARP:
+            return self._launcher.awaits_kernels
+
+    def compile_expected(self) -> None:
+        """Compile what is expected now, in a thread of one's own: others go on launching."""
+        self._launcher.compile_expected()
+
     def record(
         self,
         kernel: Any,

@@ -4,9 +4,7 @@ A kernel is compiled once on a machine, in about a second; a job needs a dozen. 
 be needed are named before: all that are missing in Warp's cache are compiled at once, and whoever
 waits is told how far that is. Of several processes one compiles and the others wait for it.
 
-The order matters in another way. Warp names a compiled kernel by a hash that changes a little once
-functions it shares with others have been compiled: what is hashed before anything is compiled has
-the same name in every run, and is found again.
+All are named before any is compiled: see `stable_names.py`.
 """
 
 import os
@@ -19,6 +17,7 @@ import warp as wp
 
 from warp_kernels.device.headers import headers_are_read, shared_headers
 from warp_kernels.device.kernel_turn import waited_turn
+from warp_kernels.device.stable_names import forget_loop_constants
 from warp_kernels.device.whole_kernels import remove_broken
 
 MOST_COMPILERS = 8
@@ -63,11 +62,37 @@ class Kernels:
         if kernel in self._ready:
             return
         self._awaited.setdefault(kernel)
-        modules = dict.fromkeys(awaited.module for awaited in self._awaited)
-        self._ready.update(self._awaited)
-        self._awaited.clear()
+        modules = self.take()
+        self._ready.update(modules)
+        self.build(modules)
+
+    @property
+    def are_awaited(self) -> bool:
+        """Whether kernels are expected of which it is not known that they are compiled."""
+        return not self._awaited.keys() <= self._ready
+
+    def take(self) -> dict[Any, Any]:
+        """The modules of all kernels that are expected, by kernel; they are expected no more."""
+        taken, self._awaited = self._awaited, {}
+        return {kernel: kernel.module for kernel in taken if kernel not in self._ready}
+
+    def settle(self, taken: dict[Any, Any]) -> None:
+        """Kernels were compiled by `build`.
+
+        Args:
+            taken: What `take` gave.
+        """
+        self._ready.update(taken)
+
+    def build(self, taken: dict[Any, Any]) -> None:
+        """Compile what is missing.
+
+        Args:
+            taken: What `take` gave.
+        """
+        modules = dict.fromkeys(taken.values())
         folder = _folder()
-        # all names before the first compilation, see above
+        # all names before the first compilation
         places = {module: folder / self._name(module) for module in modules}
         remove_broken(places.values(), folder, lambda: None)
         missing = _missing(places)
@@ -95,6 +120,7 @@ class Kernels:
     def _compile(self, modules: list[Any], look: Callable[[], None]) -> None:
         """Compile modules side by side, and look after each."""
         pool = _take_pool()
+        compiled = list(modules)
         try:
             if modules and self._device.is_cpu and not headers_are_read(_folder()):
                 # the shortest, last, while the others would only read the same headers
@@ -105,6 +131,7 @@ class Kernels:
                 job.result()
                 look()
             look()
+            forget_loop_constants(compiled)
         finally:
             pool.shutdown(cancel_futures=True)
 

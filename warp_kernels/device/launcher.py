@@ -18,6 +18,13 @@ class Launcher(Protocol):
     def expect(self, kernels: Iterable[Any]) -> None:
         """Name kernels that will be recorded: they are compiled together with the next that is."""
 
+    @property
+    def awaits_kernels(self) -> bool:
+        """Whether kernels are expected that may not be compiled yet."""
+
+    def compile_expected(self) -> None:
+        """Compile what is expected, while other threads launch what is compiled."""
+
     def record(self, kernel: Any, arguments: Sequence[Any]) -> Any:
         """A launch of one thread that is not made yet, with `set_dim`, `bounds.size`, `launch`."""
 
@@ -43,6 +50,20 @@ class WarpLauncher:
     def expect(self, kernels: Iterable[Any]) -> None:
         """Name kernels that will be recorded."""
         self._kernels.expect(kernels)
+
+    @property
+    def awaits_kernels(self) -> bool:
+        """Whether kernels are expected that may not be compiled yet."""
+        return self._kernels.are_awaited
+
+    def compile_expected(self) -> None:
+        """Compile what is expected; the lock is not held meanwhile, for nothing is launched."""
+        with WARP:
+            taken = self._kernels.take()
+        with quiet():
+            self._kernels.build(taken)
+        with WARP:
+            self._kernels.settle(taken)
 
     def record(self, kernel: Any, arguments: Sequence[Any]) -> Any:
         """A launch that is not made yet."""

@@ -5,7 +5,7 @@ import os
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from threading import RLock
+from threading import Lock, RLock
 from typing import Any
 
 import warp as wp
@@ -22,17 +22,29 @@ ERRORS = 2
 """Number of the stream for errors of every process."""
 
 _started = False
+_HUSH = Lock()
+_hushed, _usual = 0, 0  # how many want quiet, and the level before the first of them did
 
 
 @contextmanager
 def quiet() -> Iterator[None]:
-    """Keep Warp from telling what it compiles: a command's output is its own."""
-    level = wp.config.log_level
-    wp.config.log_level = max(level, wp.LOG_ERROR)
+    """Keep Warp from telling what it compiles: a command's output is its own.
+
+    Of several threads the last one ends it: one may compile for long, beside which others launch.
+    """
+    global _hushed, _usual
+    with _HUSH:
+        if not _hushed:
+            _usual = wp.config.log_level
+            wp.config.log_level = max(_usual, wp.LOG_ERROR)
+        _hushed += 1
     try:
         yield
     finally:
-        wp.config.log_level = level
+        with _HUSH:
+            _hushed -= 1
+            if not _hushed:
+                wp.config.log_level = _usual
 
 
 def find_device(name: str) -> Any:

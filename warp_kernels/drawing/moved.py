@@ -17,6 +17,7 @@ from warp_kernels.device.exact import EXACT
 from warp_kernels.device.phase import Phase
 from warp_kernels.drawing.layers import Layers
 from warp_kernels.drawing.paint import Paint, joined_paint
+from warp_kernels.drawing.pieces import within_reach
 from warp_kernels.limits import MAX_SIDE
 from warp_kernels.scene.places import to_places
 from warp_kernels.scene.scene import FIXED, Sample, Scene, anchor_of, sample_at
@@ -26,6 +27,8 @@ wp.set_module_options(EXACT)
 
 MAP = 7
 """Numbers of a row of `MovedTables.maps`."""
+FARTHEST = 32_000.0
+"""Triangles with a corner farther away than this are not drawn: places are 32 bits [px]."""
 LEAST_AREA = 1e-3
 """Triangles that are drawn with less than twice this area cover nothing [px^2]."""
 
@@ -84,12 +87,14 @@ def rows_of(
         paint: These, then the vanished ones that show through.
         layers: What fading triangles let through, or None.
         picture: Width and height of the picture [px].
-        reach: Corners that are farther outside of it than this are not drawn at all [px].
+        reach: How far outside of it a corner may be [px]; what is larger is drawn in pieces.
     """
     count = len(moved.corners)
-    order = _visible(moved, paint.ids[:count], picture, reach)
+    order = _visible(moved, paint.ids[:count])
+    pieces, drawn = within_reach(moved.corners[order], picture, reach)
+    order = order[pieces]
     rows = np.concatenate([order, np.arange(count, len(paint.ids))])
-    corners = np.concatenate([np.zeros((1, 3, 2)), moved.corners[order]])
+    corners = np.concatenate([np.zeros((1, 3, 2)), drawn])
     anchors, maps = _way_back(moved, paint.corners[rows], order)
     return Rows(
         corners.reshape(-1, 2),
@@ -101,14 +106,12 @@ def rows_of(
     )
 
 
-def _visible(moved: Moved, ids: np.ndarray, picture: tuple[int, int], reach: float) -> np.ndarray:
+def _visible(moved: Moved, ids: np.ndarray) -> np.ndarray:
     """Numbers of the triangles that can be seen, the farthest first; of two as near the older."""
     sides = moved.corners[:, 1:] - moved.corners[:, :1]
     area = np.abs(sides[:, 0, 0] * sides[:, 1, 1] - sides[:, 0, 1] * sides[:, 1, 0])
-    low, high = moved.corners.min(axis=1), moved.corners.max(axis=1)
-    meets = ((high > 0) & (low < picture)).all(axis=1)
-    fits = ((low > -reach) & (high < np.array(picture) + reach)).all(axis=1)
-    seen = np.flatnonzero((area > LEAST_AREA) & (moved.presence > 0.0) & meets & fits)
+    near = (np.abs(moved.corners) < FARTHEST).all(axis=(1, 2))
+    seen = np.flatnonzero((area > LEAST_AREA) & (moved.presence > 0.0) & near)
     return seen[np.lexsort((ids[seen], moved.depths[seen]))]
 
 

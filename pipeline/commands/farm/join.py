@@ -7,7 +7,7 @@ from pipeline.commands.pipes import shown_name
 from pipeline.track import TrackReader, join
 from pipeline.track.resume import check_track_name
 from stages.media.writing.alone import alone
-from stages.media.writing.place import check_folder
+from stages.media.writing.place import check_folder, is_among
 from warp_kernels.errors import OptionError, OutputError
 
 
@@ -31,7 +31,7 @@ def join_tracks(parts: Sequence[Path], output: Path, *, overwrite: bool, blend: 
     check_track_name(output)
     if blend < 0:
         raise OptionError(f"--blend {blend}: must be 0 or more")
-    if output.resolve() in {part.resolve() for part in parts}:
+    if is_among(output, parts):
         raise OptionError(f"{output}: is one of the tracks that are joined; choose another name")
     with alone(output):
         if output.exists() and not overwrite:

@@ -16,7 +16,7 @@ from stages.hearing.listening.spectrum import FRAMES
 from stages.look.sheet_sound import sheet_of_sound
 from stages.media.naming import STILL_ENDINGS
 from stages.media.writing.commit import true_place
-from stages.media.writing.place import check_folder, check_name
+from stages.media.writing.place import check_folder, check_name, is_among
 from stages.media.writing.still_writer import write_picture
 from warp_kernels.errors import OptionError, OutputError
 
@@ -85,7 +85,7 @@ def _outputs(arguments: argparse.Namespace) -> dict[str, Path]:
             raise OptionError(f"--plot {path}: is one picture; name it .png or .jpg")
         place = true_place(path)
         check_name(path)
-        if any(place.resolve() == one.resolve() for one in inputs):
+        if is_among(place, inputs):
             raise OutputError(path, "is the input itself", "choose another name")
         if place.exists() and not arguments.overwrite:
             raise OutputError(path, "exists already", "choose another name or --overwrite")
@@ -103,7 +103,12 @@ def _heard(arguments: argparse.Namespace, source: Path) -> Listened:
     if told is None:
         return found
     heard = found.heard.told_by(told.with_downbeats(arguments.meter))
-    return replace(found, heard=heard, notes=tuple(n for n in found.notes if n != NO_BEAT))
+    notes = tuple(n for n in found.notes if n != NO_BEAT)
+    if len(told.beats) == 1:
+        notes += (
+            f"{shown_name(Path(arguments.beats))} tells of one beat: those that are heard count",
+        )
+    return replace(found, heard=heard, notes=notes)
 
 
 def _told(heard: Heard, source: Path, written: Mapping[str, Path]) -> str:

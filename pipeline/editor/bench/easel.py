@@ -14,7 +14,7 @@ from pipeline.options.look import Look
 from pipeline.options.solve_options import SolveOptions
 from stages.frame import Frame
 from stages.hand.worked import Worked
-from stages.look.framing import framed
+from stages.look.framing import Framing, framed
 from stages.masks.region import Region
 from stages.motion.advect import Carried
 from stages.snapshot import Snapshot
@@ -76,6 +76,22 @@ class Easel:
         rng = np.random.default_rng([self._options.seed, frame.index])
         return self._triangulator(model).first(frame, self._options.layout, rng)
 
+    def prepare(self, look: Look, model: ColorModel) -> bool:
+        """Make all that a look is drawn with.
+
+        Args:
+            look: The look.
+            model: The colour model that it needs.
+
+        Returns:
+            Whether kernels may have to be compiled first: `Device.compile_expected` does it beside
+            all else, and drawing at once would do it while everything waits.
+        """
+        self._triangulator(model)
+        look, framing = self._sized(look)
+        self._wardrobe(framing.picture, look).prepare(look)
+        return self._device.awaits_kernels
+
     def drawn(
         self,
         snapshot: Snapshot,
@@ -96,8 +112,7 @@ class Easel:
         Returns:
             Code values, [rows, columns, 3 or 4] uint8.
         """
-        look = replace(look, scale=min(1.0, MOST_ACROSS / self._size[0]), output_size=None)
-        framing = look.framing_for(self._size, Fraction(1))
+        look, framing = self._sized(look)
         source = None if frame is None else frame.pixels
         view = Posed(snapshot, None, source, {}, shares, None, {}, time)
         pixels = self._wardrobe(framing.picture, look).draw(look, view)
@@ -116,6 +131,11 @@ class Easel:
         size = look.framing_for(self._size, Fraction(1)).picture
         view = Posed(snapshot, None, None, {}, None, None, {}, 0.0)
         return self._wardrobe(size, look).draw(look, view)
+
+    def _sized(self, look: Look) -> tuple[Look, Framing]:
+        """A look at the size of the page."""
+        look = replace(look, scale=min(1.0, MOST_ACROSS / self._size[0]), output_size=None)
+        return look, look.framing_for(self._size, Fraction(1))
 
     def _wardrobe(self, size: tuple[int, int], look: Look) -> Wardrobe:
         """What draws a look; what draws looks with other styles is kept for a while."""

@@ -1,6 +1,6 @@
 """The optimiser at work, one step at a time: a preview that leaves no trace."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from math import inf
 
@@ -8,6 +8,7 @@ import numpy as np
 
 from pipeline.options.solve_options import SolveOptions
 from stages.frame import Frame
+from stages.hand import Edit
 from stages.hand.worked import Worked
 from stages.mesh import Mesh
 from stages.motion.springs import LOCK
@@ -95,6 +96,21 @@ class Live:
         if self.steps % ROUND == 0:
             mesh = self._topology.adapt(mesh, self._appraiser, self._goal(mesh, course.refine))
         self.worked = self.worked.became(mesh)
+
+    def make(self, edits: Iterable[Edit]) -> None:
+        """Make edits of the mesh as it is now; it is optimised on from there.
+
+        Args:
+            edits: Edits of the frame.
+
+        Raises:
+            EditError: If one cannot be made; then none is.
+        """
+        worked = self.worked
+        for edit in edits:
+            worked = edit.apply(worked)
+        self.worked = worked
+        self._appraiser.hold(worked.locks)
 
     @property
     def energies(self) -> np.ndarray:

@@ -168,6 +168,22 @@ class Session:
             self._fitted.popitem(last=False)
         return known[1]
 
+    def prepare(self, look: Look) -> bool:
+        """Make all that a look is drawn with.
+
+        Args:
+            look: How frames are drawn.
+
+        Returns:
+            See `Easel.prepare`.
+        """
+        look = painted_regions(self.log, self.film.frames).over(look)
+        return self.easel.prepare(look, look.fitted(self.easel.model))
+
+    def compile_expected(self) -> None:
+        """Compile what `prepare` found missing; in any thread, beside all else."""
+        self._device.compile_expected()
+
     def drawn(self, frame: int, look: Look, view: str = EDITED) -> np.ndarray:
         """A frame as the output shows it, [rows, columns, 3 or 4] uint8.
 
@@ -194,12 +210,14 @@ class Session:
         self._check(frame)
         return self.easel.thumbnail(self.film.snapshot(frame))
 
-    def make(self, edits: Sequence[Edit], after: int | None) -> int:
-        """Make edits, for good; all of them or none.
+    def make(self, edits: Sequence[Edit], after: int | None, *, in_live: bool = False) -> int:
+        """Make edits, for good; all of them or none. An optimiser at work goes on with them.
 
         Args:
             edits: The edits.
             after: Number of the edit that the window saw last.
+            in_live: Whether they were pointed at in the mesh that is being optimised: then they
+                must be possible there as well.
 
         Returns:
             Number of the last edit in force.
@@ -213,17 +231,35 @@ class Session:
             before = worked.get(edit.frame) or self.worked(edit.frame)
             worked[edit.frame] = edit.apply(before)
             check_style(edit)
-        self.live = None
+        self._make_live(edits, in_live)
         return self._journal.append(edits, after)
 
-    def ghost(self, edit: Edit) -> Ghost:
+    def _make_live(self, edits: Sequence[Edit], in_live: bool) -> None:
+        """Make edits of the mesh that is being optimised; else it begins anew, with all edits."""
+        if self.live is None:
+            return
+        frame = self.live.frame.index
+        try:
+            self.live.make(edit for edit in edits if edit.frame == frame)
+        except EditError:
+            if in_live:
+                raise
+            self.live = None
+
+    def ghost(self, edit: Edit, *, in_live: bool = False) -> Ghost:
         """What an edit would do.
+
+        Args:
+            edit: The edit.
+            in_live: Whether to the mesh that is being optimised, if that is one of its frame.
 
         Raises:
             EditError: If it cannot be made.
         """
-        before = self.worked(edit.frame).mesh
-        after = edit.apply(self.worked(edit.frame)).mesh
+        live = self.live if in_live else None
+        is_live = live is not None and live.frame.index == edit.frame
+        worked = live.worked if live is not None and is_live else self.worked(edit.frame)
+        before, after = worked.mesh, edit.apply(worked).mesh
         is_fresh = ~np.isin(after.vertex_ids, before.vertex_ids)
         is_gone = ~np.isin(before.vertex_ids, after.vertex_ids)
         return Ghost(after.vertices[is_fresh], before.vertices[is_gone])

@@ -39,15 +39,24 @@ function toast(text, isNote = false) {
 function tellState(stage) {
   const { state } = stage;
   const edits = state.edits === 1 ? "1 edit" : `${state.edits} edits`;
-  element("saved").textContent = state.edits ? `${edits}, all saved` : "no edits yet";
+  write("saved", state.edits ? `${edits}, all saved` : "no edits yet");
   /** @type {HTMLButtonElement} */ (element("undo")).disabled = !state.canUndo;
   /** @type {HTMLButtonElement} */ (element("redo")).disabled = !state.canRedo;
 }
 
 /** @param {Stage} stage */
 function tellTime(stage) {
-  element("clock").textContent = String(stage.frame);
+  write("clock", String(stage.frame));
   element("play-icon").setAttribute("d", stage.isPlaying ? "M6 5h4v14H6zM14 5h4v14h-4z" : "M7 5l12 7-12 7z");
+}
+
+/**
+ * Write a line, if it says something else: the browser would lay out and draw the page again.
+ * @param {string} id
+ * @param {string} text
+ */
+function write(id, text) {
+  if (element(id).textContent !== text) element(id).textContent = text;
 }
 
 /** @param {Stage} stage */
@@ -61,7 +70,7 @@ function tellHint(stage) {
     text = [left && `Left: ${left}`, right && `Right: ${right}`].filter(Boolean).join(" · ");
     if (picked.kind === "vertex") text = `Drag: move the vertex · Right: ${NAMES.collapse_vertex}`;
   }
-  if (element("hint").textContent !== text) element("hint").textContent = text;
+  write("hint", text);
 }
 
 /** @param {Stage} stage */
@@ -69,7 +78,7 @@ function tellFacts(stage) {
   const { mesh, pointer } = stage;
   if (!mesh) return;
   const where = pointer ? `${pointer.x.toFixed(1)}, ${pointer.y.toFixed(1)} px   ` : "";
-  element("facts").textContent = `${where}${mesh.triangleCount} triangles   rmse ${mesh.rmse.toFixed(2)}`;
+  write("facts", `${where}${mesh.triangleCount} triangles   rmse ${mesh.rmse.toFixed(2)}`);
 }
 
 /** Start. */
@@ -79,6 +88,7 @@ function main() {
     tell: (words) => {
       if (words.tell === "state") stage.setState(words);
       else if (words.tell === "problem") toast(words.text);
+      else if (words.tell === "preparing") element("preparing").hidden = !words.is;
       else film.tell(words);
       if (words.tell === "done") scrubber.renew();
     },
@@ -86,7 +96,7 @@ function main() {
       if (packed.head.kind === "thumb") scrubber.show(packed);
       else stage.show(packed);
       if (packed.head.kind === "mesh") optimiser.take(/** @type {any} */ (packed.head));
-      if (packed.head.kind === "drawn") element("loading").hidden = true;
+      if (packed.head.kind === "mesh") element("loading").hidden = true; // the drawn one may take a while
     },
     lost: () => {
       isLost = true;
@@ -151,12 +161,11 @@ function main() {
     const button = /** @type {Element} */ (event.target).closest?.("button");
     if (event.detail && button instanceof HTMLElement) button.blur();
   });
-  const told = () => {
+  stage.painted = () => {
     tellHint(stage);
     tellFacts(stage);
-    requestAnimationFrame(told);
   };
-  told();
+  stage.repaint();
   Object.assign(globalThis, { trimotion: stage }); // for whoever looks into it, tests among them
 }
 

@@ -17,6 +17,8 @@ import { Painter } from "./view/painter.js";
 
 /** How long the pointer rests before the brush shows what it would do [ms]. */
 const REST = 40;
+/** How often that is renewed while the optimiser works [ms]. */
+const AGAIN = 200;
 /** Radii of the brush [px of the picture]. */
 const RADII = [3, 400];
 
@@ -74,6 +76,7 @@ export class Stage {
     /** @type {{fresh: Point[], gone: Point[], removes: boolean} | null} */
     this.ghost = null;
     this.ghostTimer = 0;
+    this.ghostAt = 0;
     this.isGhostAsked = false;
     this.edits = Promise.resolve();
     /** @type {(() => void)[]} */
@@ -81,6 +84,7 @@ export class Stage {
     /** @type {((lines: string[]) => void)[]} */
     this.commandWatchers = [];
     this.isDirty = false;
+    this.painted = () => {};
     new ResizeObserver(() => this.fitOnce()).observe(canvas);
   }
 
@@ -149,16 +153,22 @@ export class Stage {
 
   /** @param {import("./net/packed.js").Packed} packed */
   show(packed) {
-    if (packed.head.frame !== this.frame) return;
+    const isNext = this.isPlaying && packed.head.kind === "drawn" && packed.head.frame !== this.frame;
+    if (isNext) this.frame = packed.head.frame;
+    if (packed.head.frame !== this.frame && !this.isPlaying) return;
     if (packed.head.view === "live" && this.view !== "live") return; // a step that came too late
     if (packed.head.kind === "mesh") {
+      const before = this.mesh;
       this.mesh = new Mesh(packed);
       this.painter.setMesh(this.mesh);
-      this.hover();
+      if (before && this.moving) this.moving = carriedOn(this.moving, before, this.mesh);
+      if (packed.head.view === "live") this.hoverOn();
+      else this.hover();
     } else if (packed.head.kind === "picture" || packed.head.kind === "drawn") {
       this.painter.setPicture(packed.head.kind, packed);
     }
-    this.changed();
+    if (isNext) this.changed();
+    else this.repaint();
   }
 
   get isPlaying() {
@@ -239,6 +249,7 @@ export class Stage {
       this.isDirty = false;
       this.painter.paint(this.camera, this.size, this.opacities);
       this.overlay.paint(this.camera, this.mesh, this.shown());
+      this.painted();
     });
   }
 
@@ -287,6 +298,14 @@ export class Stage {
     this.repaint();
   }
 
+  /** The mesh moves by itself: what a touch of the brush would do is asked for now and then. */
+  hoverOn() {
+    const now = performance.now();
+    if (this.tool !== "brush" || !this.pointer || now - this.ghostAt < AGAIN) return;
+    this.ghostAt = now;
+    this.askGhost();
+  }
+
   async askGhost() {
     if (this.isGhostAsked || !this.pointer || !this.connection.isOpen) return;
     const at = this.pointer;
@@ -323,7 +342,7 @@ export class Stage {
    */
   make(...edits) {
     this.pause();
-    if (this.view !== "edited") {
+    if (this.view !== "edited" && this.view !== "live") {
       this.told.say("Now the frame is shown as your edits leave it: make the edit again.");
       this.setView("edited");
       return this.edits;
@@ -409,4 +428,17 @@ export class Stage {
     this.polygon = [];
     this.repaint();
   }
+}
+
+/**
+ * A vertex that is carried while another mesh comes, which may have lost it.
+ * @param {{vertex: number, from: Point, to: Point}} moving
+ * @param {Mesh} before
+ * @param {Mesh} mesh
+ */
+function carriedOn({ vertex, from, to }, before, mesh) {
+  const now = mesh.ids.indexOf(before.ids[vertex]);
+  if (now < 0) return null;
+  const isMoved = to.x !== from.x || to.y !== from.y;
+  return { vertex: now, from: mesh.at(now), to: isMoved ? to : mesh.at(now) };
 }

@@ -1,6 +1,7 @@
 """What a window may ask for, by name."""
 
 from collections.abc import Awaitable, Callable
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from pipeline.edit_log.json_lines import log_of
@@ -8,7 +9,7 @@ from pipeline.editor.bench.command_lines import render_line, solve_line
 from pipeline.editor.bench.easel import look_of
 from pipeline.editor.bench.errands import beside
 from pipeline.editor.bench.long_work import Applying, Rendering
-from pipeline.editor.bench.session import VIEWS
+from pipeline.editor.bench.session import LIVE, VIEWS
 from pipeline.editor.bench.sketch import Sketch, drawing_of, keep_drawing
 from pipeline.editor.wire.asked import Asked, AskError
 from pipeline.editor.wire.packed import packed_pixels
@@ -43,10 +44,10 @@ async def look_at(window: "Window", asked: Asked) -> Reply:
         await window.studio.do(window.studio.session.picture, frame)  # says what is there
     window.optimise({}, steps=0)
     window.frame, window.view = frame, view
-    shows = {
+    shows: dict[str, Callable[[], Awaitable[None]]] = {
         "picture": window.show_picture,
         "mesh": window.show_mesh,
-        "drawn": window.show_drawn,
+        "drawn": partial(window.show_drawn, at_once=True),
     }
     for part in shows.keys() & set(map(str, parts)):
         await shows[part]()
@@ -143,7 +144,8 @@ async def edit(window: "Window", asked: Asked) -> Reply:
     """Make edits."""
     session = window.studio.session
     after = asked.whole("after") if "after" in asked.values else None
-    number = await window.studio.do(session.make, _edits(asked), after)
+    in_live = window.view == LIVE
+    number = await window.studio.do(session.make, _edits(asked), after, in_live=in_live)
     await window.studio.changed()
     return {"number": number}
 
@@ -151,7 +153,8 @@ async def edit(window: "Window", asked: Asked) -> Reply:
 async def ghost(window: "Window", asked: Asked) -> Reply:
     """Where an edit would put vertices, and which would go."""
     (edit,) = _edits(asked)[:1]
-    found = await window.studio.do(window.studio.session.ghost, edit)
+    session, in_live = window.studio.session, window.view == LIVE
+    found = await window.studio.do(session.ghost, edit, in_live=in_live)
     return {"fresh": found.fresh.tolist(), "gone": found.gone.tolist()}
 
 

@@ -34,6 +34,7 @@ class Studio:
     def __init__(self, session: Session, log: Log) -> None:
         self.session, self.log = session, log
         self._thread = ThreadPoolExecutor(1, "trimotion-editor")
+        self._compiler = ThreadPoolExecutor(1, "trimotion-compiler")
         self._windows: set[Window] = set()
         self._number = session.number
         self._work: asyncio.Task[None] | None = None
@@ -70,6 +71,11 @@ class Studio:
         """
         loop = asyncio.get_running_loop()
         return await loop.run_in_executor(self._thread, lambda: work(*arguments, **named))
+
+    async def compile_expected(self) -> None:
+        """Compile what is missing, while everything else goes on."""
+        loop = asyncio.get_running_loop()
+        await loop.run_in_executor(self._compiler, self.session.compile_expected)
 
     async def changed(self) -> None:
         """Show all windows what the job is now."""
@@ -142,6 +148,7 @@ class Studio:
         self._is_cancelled.set()
         self._thread.submit(self.session.close).result()
         self._thread.shutdown()
+        self._compiler.shutdown(cancel_futures=True)
 
     def facts(self) -> dict[str, Any]:
         """What a window is told when it opens."""

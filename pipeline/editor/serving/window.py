@@ -5,11 +5,13 @@ import json
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import replace
+from time import monotonic
 from typing import Any
 
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from pipeline.editor.bench.easel import look_of
+from pipeline.editor.bench.live import Live
 from pipeline.editor.bench.session import EDITED, LIVE
 from pipeline.editor.bench.sketch import Sketch
 from pipeline.editor.serving.answers import ANSWERS
@@ -23,6 +25,8 @@ from warp_kernels.errors import TrimotionError
 
 TOO_BIG, POLICY, TRY_LATER = 1009, 1008, 1013
 """Codes with which a connection is closed."""
+LULL = 4.0
+"""While the optimiser works, so much longer than drawing took nothing is drawn: it shall work."""
 
 
 class Window:
@@ -47,7 +51,7 @@ class Window:
         self._course: Mapping[str, float] = {}
         self._steps = 0
         self._running = asyncio.Event()
-        self._is_drawn = True
+        self._is_drawn, self._draws_at = True, 0.0
         self._pace = Pace()
 
     async def run(self) -> None:
@@ -91,19 +95,29 @@ class Window:
 
     async def show_mesh(self) -> None:
         """Show the mesh of the frame."""
-        view = EDITED if self.view == LIVE else self.view
-        self.show("mesh", await self.studio.do(self._mesh, self.frame, view))
+        self.show("mesh", await self.studio.do(self._mesh, self.frame, self.view))
 
     def want_drawn(self) -> None:
         """Have the frame drawn, soon: of what is asked for meanwhile the last counts."""
         self._undrawn.set()
 
-    async def show_drawn(self) -> None:
-        """Show the frame as the film shows it."""
+    async def show_drawn(self, *, at_once: bool = False) -> None:
+        """Show the frame as the film shows it.
+
+        Args:
+            at_once: Whether who asks waits: where kernels have to be compiled it is shown later.
+        """
         frame, look = self.frame, self.look
         if self.sketch is not None:
             styles = look.shown_styles(self.studio.session.easel.model)
             look = replace(look, styles=(*styles, self.sketch))
+        if await self.studio.do(self.studio.session.prepare, look):
+            if at_once:
+                self.want_drawn()
+                return
+            self.tell({"tell": "preparing", "is": True})
+            await self.studio.compile_expected()
+            self.tell({"tell": "preparing", "is": False})
         drawn = await self.studio.do(self.studio.session.drawn, frame, look, self.view)
         self.show("drawn", packed_pixels({"kind": "drawn", "frame": frame}, drawn))
 
@@ -131,19 +145,25 @@ class Window:
                     self._steps = 0
                     self.tell({"tell": "problem", "text": str(error)})
                     break
-                if self._steps == 0 or self._is_drawn:
+                if self._steps == 0 or (self._is_drawn and monotonic() >= self._draws_at):
                     self._is_drawn = False
                     self.want_drawn()
                 while "mesh" in self._pictures:  # no step is taken before the last one is shown
                     await asyncio.sleep(0.002)
 
     def _step(self, frame: int, course: Mapping[str, float]) -> bytes:
-        live = self.studio.session.optimise(frame, course)
+        return self._packed_live(self.studio.session.optimise(frame, course))
+
+    def _packed_live(self, live: Live) -> bytes:
+        frame = live.frame.index
         head = {"frame": frame, "view": LIVE, "steps": live.steps, "rmse": live.rmse}
         return packed_work(head, live.worked, live.energies, live.colors)
 
     def _mesh(self, frame: int, view: str) -> bytes:
         session = self.studio.session
+        if view == LIVE and session.live is not None and session.live.frame.index == frame:
+            return self._packed_live(session.live)
+        view = EDITED if view == LIVE else view
         head = {"frame": frame, "number": session.number, "view": view}
         return packed_mesh(head, session.shown(frame, view=view))
 
@@ -153,7 +173,9 @@ class Window:
             await self._undrawn.wait()
             self._undrawn.clear()
             try:
+                begun = monotonic()
                 await self.show_drawn()
+                self._draws_at = monotonic() + LULL * (monotonic() - begun)
                 self._is_drawn = True
             except TrimotionError as error:
                 self.tell({"tell": "problem", "text": str(error)})

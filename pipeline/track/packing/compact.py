@@ -15,13 +15,15 @@ from stages.solve.color_owners import color_owners
 from stages.solve.grid import (
     DROPPED,
     PLACES,
+    Nodes,
     colors_through,
     shades,
-    side_by_side,
     value_range,
 )
 from warp_kernels.color_model import CHANNELS, ColorModel
 
+GREEN = 1
+"""The channel of which the others are told by their differences."""
 LARGEST_SHADE = 2.0**50
 """Colours beyond are told plainly: differences of others are whole numbers of a double."""
 
@@ -131,33 +133,43 @@ def unpack_colors(mesh: Mesh, model: ColorModel, blob: Any, limits: Any) -> tupl
     if not is_whole(blob):
         colors = unpack(blob, "<f8", (T, CHANNELS, model.term_count))
         return colors, None if limits is None else unpack(limits, "u1", (T, 2, CHANNELS))
-    values = _from_differences(unpack_whole(blob, (model.term_count, CHANNELS, T)))
-    with np.errstate(over="ignore", invalid="ignore"):
-        colors = colors_through(mesh, model, values)
-    if limits is None or not is_whole(limits):
-        return colors, None if limits is None else unpack(limits, "u1", (T, 2, CHANNELS))
-    spare = unpack_whole(limits, (2, CHANNELS, T))
+    numbers = unpack_whole(blob, (model.term_count, CHANNELS, T))
+    spare, bounds = None, None
+    if limits is not None and is_whole(limits):
+        spare, bounds = unpack_whole(limits, (2, CHANNELS, T)), np.empty((T, 2, CHANNELS), np.uint8)
+    elif limits is not None:
+        bounds = unpack(limits, "u1", (T, 2, CHANNELS))
+    colors, nodes = np.empty((T, CHANNELS, model.term_count)), Nodes(mesh, model)
+    green: np.ndarray | float = 0.0
+    for channel in (GREEN, 0, 2):  # one at a time stays in the processor's cache
+        values = numbers[:, channel].astype(np.float64)
+        values[1:] += values[0]
+        values += green
+        if channel == GREEN:
+            green = values
+        with np.errstate(over="ignore", invalid="ignore"):
+            nodes.fit(values, colors[:, channel])
+        if spare is not None and bounds is not None:
+            bounds[:, :, channel] = _limits(values, spare[:, channel])
+    return colors, bounds
+
+
+def _limits(values: np.ndarray, spare: np.ndarray) -> np.ndarray:
+    """The lowest and highest values of a channel, by how far they lie from its nodes, [T, 2]."""
     lowest, highest = value_range(values)
-    found = np.stack([lowest + spare[0], highest - spare[1]])
-    if not (found.min() >= 0 and found.max() <= 255):
+    lowest += spare[0]
+    highest -= spare[1]
+    if not (min(lowest.min(), highest.min()) >= 0 and max(lowest.max(), highest.max()) <= 255):
         raise ValueError("a limit of a colour that is none")
-    return colors, side_by_side(found.astype(np.uint8))
+    return np.stack([lowest, highest], axis=1)
 
 
 def _by_differences(values: np.ndarray) -> np.ndarray:
     """Green, red and blue less it; the first node, and the others less it, all [K, 3, T]."""
     numbers = values.astype(np.int64)
     numbers[1:] -= numbers[0]
-    numbers[:, ::2] -= numbers[:, 1:2]
+    numbers[:, ::2] -= numbers[:, [GREEN]]
     return numbers
-
-
-def _from_differences(numbers: np.ndarray) -> np.ndarray:
-    """Values at nodes, [K, 3, T] float64."""
-    values = numbers.astype(np.float64)
-    values[:, ::2] += values[:, 1:2]
-    values[1:] += values[0]
-    return values
 
 
 def _bytes(array: np.ndarray) -> bytes:

@@ -175,7 +175,10 @@ def _unpack_triangles(blob: bytes, T: int, V: int) -> np.ndarray:
     found = unpack_whole(blob, (3, T))
     if not _are_rows(found, V):
         raise ValueError("a triangle of unknown vertices")
-    return np.ascontiguousarray(found.T, dtype=np.int32)
+    triangles = np.empty((T, 3), dtype=np.int32)
+    for corner in range(3):  # a third of the time of turning it all at once
+        triangles[:, corner] = found[corner]
+    return triangles
 
 
 def _row(connection: sqlite3.Connection, frame: int) -> tuple[Any, tuple[int, int]]:
@@ -220,14 +223,12 @@ def _changed(
     if not (found | ~kept).all() or not _are_rows(base.triangles, len(base.vertex_ids)):
         raise ValueError("triangles as in a frame that has none such")
     there, is_there = _rows_in(vertex_ids, base.vertex_ids)
-    corners = base.triangles.take(rows[kept], axis=0)
-    if not is_there.take(corners).all():
+    triangles = base.triangles.take(rows, axis=0)
+    if not (is_there.all() or is_there.take(triangles[kept]).all()):
         raise ValueError("triangles of vertices that are gone")
-    corners = there.take(corners)
-    triangles = np.empty((T, 3), dtype=np.int32)
-    triangles[kept] = corners
-    others = _unpack_triangles(blob[HEAD + length :], int((~kept).sum()), len(vertex_ids))
-    triangles[~kept] = others
+    triangles = there.astype(np.int32).take(triangles)
+    others = np.flatnonzero(~kept)
+    triangles[others] = _unpack_triangles(blob[HEAD + length :], len(others), len(vertex_ids))
     return triangles
 
 

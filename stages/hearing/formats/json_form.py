@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from stages.hearing.contour import Contour
-from stages.hearing.heard import USUAL_METER, Heard, Mark, usual_bpm
+from stages.hearing.heard import MOST_BEATS, USUAL_METER, Heard, Mark, usual_bpm
 
 DIGITS = 4
 """Decimals of times [s] and of strengths: a tenth of a millisecond, a ten-thousandth."""
@@ -108,6 +108,8 @@ def _times(found: Mapping[str, Any], name: str) -> np.ndarray:
     values = found.get(name, [])
     if not isinstance(values, list):
         raise ValueError(f"{name} is not a list")
+    if len(values) > MOST_BEATS:
+        raise ValueError(f"{name} holds more than {MOST_BEATS} times")
     times = [_number(value, name) for value in values]
     for before, after in pairwise(times):
         if after - before < LEAST:
@@ -131,7 +133,10 @@ def _envelope(found: object, name: str) -> Contour:
             f"rate of envelope {name} is {rate:g}, not above 0 and up to {MOST_RATE:g}"
         )
     values = [_number(value, f"envelope {name}") for value in found["values"]]
-    return Contour(rate, np.clip(np.array(values, dtype=np.float32), 0, 1))
+    for value in values:
+        if not 0 <= value <= 1:
+            raise ValueError(f"envelope {name} holds {value:g}; strengths go from 0 to 1")
+    return Contour(rate, np.array(values, dtype=np.float32))
 
 
 def _mark(found: object) -> Mark:

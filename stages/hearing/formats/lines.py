@@ -8,10 +8,11 @@ section, unless all lines have the same one.
 
 import re
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
-from stages.hearing.heard import USUAL_METER, Heard, Mark, usual_bpm
+from stages.hearing.heard import MOST_BEATS, USUAL_METER, Heard, Mark, usual_bpm
 
 _BEATS = frozenset({"", "b", "beat", "x", "tick", "click"})
 _DOWNBEATS = frozenset({"db", "downbeat", "down", "bar", "measure", "|"})
@@ -21,6 +22,7 @@ _MOST_IN_BAR = 16
 """Larger numbers count the beats of the whole piece."""
 _MOST_TIME = 1e9
 """Seconds; larger numbers are no times."""
+_COMMA = re.compile(r"(\d{1,9}),(\d{1,9})")
 _CLOCK = re.compile(r"(?:(\d+):)?(\d+):(\d+(?:\.\d*)?)")
 
 
@@ -45,9 +47,15 @@ def from_lines(text: str) -> Heard:
     Raises:
         ValueError: If a line is something else; the message begins with its number.
     """
-    lines = sorted(_read(text), key=lambda line: line.time)
+    lines = _read(text)
     if not lines:
         raise ValueError("holds no time")
+    if not any(line.word for line in lines):  # bare times; labels may be written kind by kind
+        for before, after in pairwise(lines):
+            if after.time < before.time:
+                back = f"goes back from {before.time:g} to {after.time:g} s"
+                raise ValueError(f"line {after.number}: {back}")
+    lines.sort(key=lambda line: line.time)
     words = {line.word.lower() for line in lines}
     if len(words) == 1 and not _IN_BAR.fullmatch(min(words)):
         words = {""}
@@ -101,13 +109,16 @@ def as_labels(heard: Heard) -> str:
 def _read(text: str) -> list[Entry]:
     """The lines that hold a time; a heading before the first one and remarks are passed over."""
     found: list[Entry] = []
-    for number, row in enumerate(text.split("\n"), start=1):
+    rows = text.split("\n")
+    if _are_decimals(rows):
+        rows = [row.replace(",", ".") for row in rows]
+    for number, row in enumerate(rows, start=1):
         if not row.strip() or row.lstrip().startswith(("#", "\\", "//")):
             continue  # a backslash begins the pitches of a label of Audacity
         fields = _fields(row)
         time = seconds_of(fields[0])
         if time is None:
-            if found or number > 3:
+            if found or number > 3 or _is_number(fields[0]):
                 raise ValueError(f"line {number}: {fields[0][:30]!r} is not a time")
             continue
         rest = fields[1:]
@@ -116,7 +127,31 @@ def _read(text: str) -> list[Entry]:
         elif len(rest) == 1 and "\t" in row and _is_end(rest[0], time):
             rest = []  # a label of Audacity without a word
         found.append(Entry(number, time, " ".join(rest).strip()))
+        if len(found) > MOST_BEATS:
+            raise ValueError(f"holds more than {MOST_BEATS} times")
     return found
+
+
+def _are_decimals(rows: list[str]) -> bool:
+    """Whether lines such as `0,5` are times with a decimal comma, and not times with a place.
+
+    A place in a bar is never 0, and times are not twice the same.
+    """
+    found = [_COMMA.fullmatch(row.strip()) for row in rows if row.strip()]
+    if not found or None in found:
+        return False
+    pairs = [(int(one[1]), one[2]) for one in found if one]
+    firsts = [first for first, _ in pairs]
+    return len(set(firsts)) < len(firsts) or any(not int(second) for _, second in pairs)
+
+
+def _is_number(field: str) -> bool:
+    """Whether a field that is no time is a number all the same: no heading."""
+    try:
+        float(field)
+    except ValueError:
+        return False
+    return True
 
 
 def _is_end(field: str, time: float) -> bool:

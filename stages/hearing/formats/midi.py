@@ -8,13 +8,11 @@ from itertools import islice
 
 import numpy as np
 
-from stages.hearing.heard import USUAL_METER, Heard, Mark, usual_bpm
+from stages.hearing.heard import MOST_BEATS, USUAL_METER, Heard, Mark, usual_bpm
 
 _TEMPO, _TIME_SIGNATURE, _MARKER, _CUE, _END = 0x51, 0x58, 0x06, 0x07, 0x2F
 _USUAL_TEMPO = 500_000
 """Microseconds of a quarter note where nothing is said: 120 bpm."""
-_MOST_BEATS = 100_000
-"""Beats of a file at most: days of music."""
 
 
 @dataclass(frozen=True)
@@ -45,6 +43,8 @@ def from_midi(content: bytes) -> Heard:
     last, place = 0, 8 + int.from_bytes(content[4:8], "big")
     while place + 8 <= len(content):
         name, size = content[place : place + 4], int.from_bytes(content[place + 4 : place + 8])
+        if place + 8 + size > len(content):
+            raise ValueError("breaks off within a track")
         if name == b"MTrk":
             found, end = _events(content[place + 8 : place + 8 + size])
             events += found
@@ -97,7 +97,9 @@ class _Tempos:
         tempos = {0: _USUAL_TEMPO}
         for event in events:
             if event.kind == _TEMPO and len(event.content) >= 3:
-                tempos[event.tick] = int.from_bytes(event.content[:3], "big") or _USUAL_TEMPO
+                tempos[event.tick] = int.from_bytes(event.content[:3], "big")
+                if not tempos[event.tick]:
+                    raise ValueError("has a tempo of 0 microseconds a quarter note")
         ticks = np.array(list(tempos), dtype=float)
         steps = np.array(list(tempos.values())) / (division * 1e6)
         times = np.concatenate([[0.0], np.cumsum(np.diff(ticks) * steps[:-1])])
@@ -165,8 +167,8 @@ def _beats(events: list[_Event], division: int, last: int) -> tuple[np.ndarray, 
     downbeats: list[np.ndarray] = []
     for start, end in zip(starts, [*starts[1:], last + 1], strict=True):
         count, step = _in_bar(signs[start], quarter)
-        if (end - start) / step > _MOST_BEATS:
-            raise ValueError(f"lasts longer than {_MOST_BEATS} beats")
+        if (end - start) / step > MOST_BEATS:
+            raise ValueError(f"lasts longer than {MOST_BEATS} beats")
         beats.append(np.arange(start, end, step))
         downbeats.append(np.arange(start, end, step * count))
     return np.concatenate(beats), np.concatenate(downbeats)

@@ -1,6 +1,7 @@
 """Whether a file can come to a place, found out before any work is done."""
 
 import os
+from collections.abc import Iterable
 from pathlib import Path
 
 from stages.media.writing.commit import (
@@ -34,6 +35,26 @@ def check_name(path: Path) -> None:
     if place.is_dir():
         raise OutputError(path, "is a folder", "give the name of a file")
     refuse_special(path)
+
+
+def is_among(path: Path, others: Iterable[Path]) -> bool:
+    """Whether a file is one of some others, whatever they are called.
+
+    Args:
+        path: The file.
+        others: The others; a name that no file can have is that of none.
+    """
+    try:
+        place = path.resolve()
+    except (OSError, ValueError):  # a loop of links, or a null byte
+        return False
+    for other in others:
+        try:
+            if other.resolve() == place:
+                return True
+        except (OSError, ValueError):
+            continue
+    return False
 
 
 def check_folder(path: Path) -> None:

@@ -25,6 +25,7 @@ export function slider({ name, label, least, most, step, value, title = "", show
   row.append(text, input, output);
   /** @param {number} next */
   const set = (next) => {
+    if (input.value === String(next)) return;
     input.value = String(next);
     output.textContent = shown(input.valueAsNumber);
   };

@@ -1,5 +1,7 @@
 /** Frames a second where the source has no times. */
 const USUAL = 25;
+/** Frames that are asked for before the one before them is here. */
+const AHEAD = 3;
 
 /** Plays the film, as it is drawn, in its own time. */
 export class Player {
@@ -7,7 +9,6 @@ export class Player {
   constructor(stage) {
     this.stage = stage;
     this.isOn = false;
-    this.shown = 0;
   }
 
   async play() {
@@ -20,16 +21,20 @@ export class Player {
     const start = stage.frames.indexOf(stage.frame);
     const from = start + 1 < stage.frames.length ? start : 0;
     const begun = performance.now();
+    let asked = stage.frame;
+    let ahead = 0;
     while (this.isOn) {
       const due = from + Math.floor(((performance.now() - begun) * rate) / 1000);
       if (due >= stage.frames.length) break;
       const frame = stage.frames[due];
-      if (frame !== stage.frame) {
-        stage.frame = frame;
+      if (frame !== asked && ahead < AHEAD) {
+        asked = frame;
+        ahead += 1;
         const parts = stage.opacities.mesh > 0 ? ["drawn", "mesh"] : ["drawn"];
-        await stage.connection.ask("look", { frame, view: stage.view, parts }).catch(() => (this.isOn = false));
-        this.shown += 1;
-        stage.changed();
+        stage.connection
+          .ask("look", { frame, view: stage.view, parts })
+          .catch(() => (this.isOn = false))
+          .finally(() => (ahead -= 1));
       }
       await new Promise((done) => requestAnimationFrame(done));
     }

@@ -16,6 +16,7 @@ export class Overlay {
   /** @param {HTMLCanvasElement} canvas */
   constructor(canvas) {
     this.canvas = canvas;
+    this.isBare = false;
     this.context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
   }
 
@@ -26,6 +27,9 @@ export class Overlay {
    */
   paint(camera, mesh, shown) {
     const { canvas, context: c } = this;
+    const isBare = !(shown.picked || shown.moving || shown.brush || shown.polygon.length || shown.cursor);
+    if (isBare && this.isBare) return;
+    this.isBare = isBare;
     const scale = devicePixelRatio || 1;
     const [across, down] = [Math.round(canvas.clientWidth * scale), Math.round(canvas.clientHeight * scale)];
     if (canvas.width !== across || canvas.height !== down) [canvas.width, canvas.height] = [across, down];

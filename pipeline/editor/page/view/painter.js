@@ -8,6 +8,8 @@ import { DOTS, ERRORS, LINES, PICTURE } from "./shaders.js";
 
 /** Root of the energy of a pixel that is shown brightest [code values]. */
 const MOST_ERROR = 60;
+/** Corners of the two triangles of a box. */
+const BOX = 6;
 
 /** Draws the layers of the stage with WebGL. */
 export class Painter {
@@ -23,6 +25,9 @@ export class Painter {
     this.errors = program(gl, ERRORS);
     /** @type {Record<string, WebGLTexture>} */
     this.textures = {};
+    this.isOpaque = false;
+    this.news = 0; // how often something was taken in
+    this.painted = "";
     this.edges = 0;
     this.vertices = 0;
     this.lineArray = gl.createVertexArray();
@@ -42,6 +47,8 @@ export class Painter {
    */
   setPicture(name, { head, arrays }) {
     const { gl } = this;
+    this.news += 1;
+    if (name === "drawn") this.isOpaque = head.channels === 3;
     const texture = (this.textures[name] ??= /** @type {WebGLTexture} */ (gl.createTexture()));
     const format = head.channels === 4 ? gl.RGBA : gl.RGB;
     gl.bindTexture(gl.TEXTURE_2D, texture);
@@ -54,6 +61,7 @@ export class Painter {
 
   /** @param {Mesh} mesh */
   setMesh(mesh) {
+    this.news += 1;
     const ends = new Float32Array(4 * mesh.edgeCount);
     for (let e = 0; e < mesh.edgeCount; e++) {
       const [a, b] = mesh.ends(e);
@@ -61,12 +69,13 @@ export class Painter {
     }
     this.edges = mesh.edgeCount;
     this.vertices = mesh.vertexCount;
-    const heldEdges = Float32Array.from(mesh.heldEdges);
-    this.fill(this.lineArray, this.lines, { ends: [4, ends], held: [1, heldEdges] }, this.buffers);
+    const heldEdges = Float32Array.from(mesh.heldEdges.subarray(0, mesh.edgeCount));
+    this.fill(this.lineArray, this.lines, { ends: [4, boxed(ends, 4)], held: [1, boxed(heldEdges, 1)] }, this.buffers);
     const at = { at: this.buffers.at, held: this.buffers.heldAt };
     const positions = Float32Array.from(mesh.vertices);
     this.setErrors(mesh);
-    this.fill(this.dotArray, this.dots, { at: [2, positions], held: [1, Float32Array.from(mesh.held)] }, at);
+    const held = Float32Array.from(mesh.held);
+    this.fill(this.dotArray, this.dots, { at: [2, boxed(positions, 2)], held: [1, boxed(held, 1)] }, at);
   }
 
   /** @param {Mesh} mesh */
@@ -79,7 +88,7 @@ export class Painter {
       error[corner] = Math.min(1, Math.sqrt(Math.max(0, mesh.energies[Math.floor(corner / 3)])) / MOST_ERROR);
     }
     const buffers = { at: this.buffers.cornerAt, error: this.buffers.error };
-    this.fill(this.errorArray, this.errors, { at: [2, at], error: [1, error] }, buffers, 0);
+    this.fill(this.errorArray, this.errors, { at: [2, at], error: [1, error] }, buffers);
   }
 
   /**
@@ -87,9 +96,8 @@ export class Painter {
    * @param {Program} used
    * @param {Record<string, [number, Float32Array]>} values
    * @param {Record<string, WebGLBuffer | null>} buffers
-   * @param {number} [each] instances that share a value, 0 for a value for every vertex
    */
-  fill(array, used, values, buffers, each = 1) {
+  fill(array, used, values, buffers) {
     const { gl } = this;
     gl.bindVertexArray(array);
     for (const [name, [size, data]] of Object.entries(values)) {
@@ -98,13 +106,12 @@ export class Painter {
       gl.bufferData(gl.ARRAY_BUFFER, data, gl.DYNAMIC_DRAW);
       gl.enableVertexAttribArray(place);
       gl.vertexAttribPointer(place, size, gl.FLOAT, false, 0, 0);
-      gl.vertexAttribDivisor(place, each);
     }
     gl.bindVertexArray(null);
   }
 
   /**
-   * Draw everything.
+   * Draw everything, unless it is on the screen already.
    * @param {import("./camera.js").Camera} camera
    * @param {{width: number, height: number}} size of the picture
    * @param {Opacities} opacities
@@ -113,13 +120,18 @@ export class Painter {
     const { gl, canvas } = this;
     const scale = devicePixelRatio || 1;
     const [across, down] = [Math.round(canvas.clientWidth * scale), Math.round(canvas.clientHeight * scale)];
+    const lies = `${camera.x} ${camera.y} ${camera.zoom} ${across} ${down}`;
+    const painted = `${this.news} ${lies} ${Object.values(opacities)}`;
+    if (painted === this.painted) return;
+    this.painted = painted;
     if (canvas.width !== across || canvas.height !== down) [canvas.width, canvas.height] = [across, down];
     gl.viewport(0, 0, across, down);
     gl.clearColor(0, 0, 0, 0);
     gl.clear(gl.COLOR_BUFFER_BIT);
     const view = [camera.x * scale, camera.y * scale, camera.zoom * scale];
     for (const name of /** @type {const} */ (["picture", "drawn"])) {
-      if (this.textures[name] && opacities[name] > 0) this.paintPicture(name, view, size, opacities[name]);
+      const isHidden = name === "picture" && this.isOpaque && opacities.drawn === 1;
+      if (this.textures[name] && opacities[name] > 0 && !isHidden) this.paintPicture(name, view, size, opacities[name]);
     }
     if (opacities.errors > 0 && this.corners) this.paintErrors(view, opacities.errors);
     if (opacities.mesh > 0 && this.edges) this.paintMesh(view, scale, camera.zoom, opacities.mesh);
@@ -163,11 +175,11 @@ export class Painter {
     this.use(lines, view, opacity);
     gl.uniform1f(lines.at("width"), scale * Math.min(1.6, 0.8 + 0.2 * zoom));
     gl.bindVertexArray(this.lineArray);
-    gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, this.edges);
+    gl.drawArrays(gl.TRIANGLES, 0, BOX * this.edges);
     this.use(dots, view, opacity);
     gl.uniform1f(dots.at("radius"), scale * Math.min(3.2, 1.1 + 0.7 * zoom));
     gl.bindVertexArray(this.dotArray);
-    gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, this.vertices);
+    gl.drawArrays(gl.TRIANGLES, 0, BOX * this.vertices);
   }
 
   /**
@@ -182,6 +194,19 @@ export class Painter {
     gl.uniform2f(used.at("screen"), gl.drawingBufferWidth, gl.drawingBufferHeight);
     gl.uniform1f(used.at("opacity"), opacity);
   }
+}
+
+/**
+ * Values of boxes as values of their corners.
+ * @param {Float32Array} values
+ * @param {number} size numbers of a value
+ */
+function boxed(values, size) {
+  const made = new Float32Array(BOX * values.length);
+  for (let i = 0; i < values.length; i += size) {
+    for (let k = 0; k < BOX; k++) for (let j = 0; j < size; j++) made[BOX * i + k * size + j] = values[i + j];
+  }
+  return made;
 }
 
 /**

@@ -6,6 +6,14 @@ const SCREEN = `
     return vec4(unit.x, -unit.y, 0.0, 1.0);
   }`;
 
+/** The corner of a box of two triangles, 0 to 3: instances of a box each would be drawn one by one by
+ * a browser without a card, in many times the time. */
+const BOX = `
+  int corner() {
+    int number = gl_VertexID % 6;
+    return number < 3 ? number : number == 3 ? 2 : number == 4 ? 1 : 3;
+  }`;
+
 /** A picture over its domain. */
 export const PICTURE = {
   vertex: `#version 300 es
@@ -28,10 +36,11 @@ export const PICTURE = {
     }`,
 };
 
-/** Lines of any width, one instance an edge. */
+/** Lines of any width, a box an edge. */
 export const LINES = {
   vertex: `#version 300 es
     ${SCREEN}
+    ${BOX}
     uniform float width;
     in vec4 ends;
     in float held;
@@ -40,11 +49,11 @@ export const LINES = {
     void main() {
       vec2 a = ends.xy * camera.z + camera.xy, b = ends.zw * camera.z + camera.xy;
       vec2 along = normalize(b - a + vec2(1e-6, 0.0)), normal = vec2(-along.y, along.x);
-      float side = float(gl_VertexID & 1) * 2.0 - 1.0;
+      float side = float(corner() & 1) * 2.0 - 1.0;
       float reach = width * (1.0 + 0.8 * held) * 0.5 + 1.0;
       across = side * reach;
       isHeld = held;
-      gl_Position = shown(((gl_VertexID >> 1) == 0 ? a : b) + normal * across);
+      gl_Position = shown(((corner() >> 1) == 0 ? a : b) + normal * across);
     }`,
   fragment: `#version 300 es
     precision highp float;
@@ -61,18 +70,19 @@ export const LINES = {
     }`,
 };
 
-/** Discs, one instance a vertex. */
+/** Discs, a box a vertex. */
 export const DOTS = {
   vertex: `#version 300 es
     ${SCREEN}
+    ${BOX}
     uniform float radius;
     in vec2 at;
     in float held;
     out vec2 away;
     out float isHeld;
     void main() {
-      vec2 corner = vec2(gl_VertexID & 1, gl_VertexID >> 1) * 2.0 - 1.0;
-      away = corner * (radius * (1.0 + 0.6 * held) + 1.5);
+      vec2 side = vec2(corner() & 1, corner() >> 1) * 2.0 - 1.0;
+      away = side * (radius * (1.0 + 0.6 * held) + 1.5);
       isHeld = held;
       gl_Position = shown(at * camera.z + camera.xy + away);
     }`,
