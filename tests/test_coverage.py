@@ -11,7 +11,7 @@ from tests.oracles.coverage import covered_pixels, rounded
 from warp_kernels.color_model import CONSTANT
 from warp_kernels.device.device import Device
 from warp_kernels.drawing.band_lists import BandLists
-from warp_kernels.drawing.gbuffer import record_gbuffer
+from warp_kernels.drawing.gbuffer import fill_threads, record_gbuffer
 
 NOBODY = -1
 
@@ -83,7 +83,7 @@ def owners_by_kernel(mesh: Mesh, device: Device) -> np.ndarray:
             samples=1,
             triangle_out=band,
         )
-        phase.resize(rows, threads=mesh.triangle_count)
+        phase.resize(rows, threads=fill_threads(device, mesh.triangle_count))
         device.run([phase])
         bands.append(band.numpy())
     return np.concatenate(bands)

@@ -6,7 +6,7 @@ import warp as wp
 from stages.mesh import Mesh
 from warp_kernels.device.device import Device
 from warp_kernels.drawing.band_lists import BandLists
-from warp_kernels.drawing.gbuffer import record_gbuffer
+from warp_kernels.drawing.gbuffer import fill_threads, record_gbuffer
 
 
 def triangle_of_pixels(device: Device, mesh: Mesh) -> np.ndarray:
@@ -34,6 +34,6 @@ def triangle_of_pixels(device: Device, mesh: Mesh) -> np.ndarray:
         samples=1,
         triangle_out=labels,
     )
-    phase.resize(mesh.height, threads=mesh.triangle_count)
+    phase.resize(mesh.height, threads=fill_threads(device, mesh.triangle_count))
     device.run([phase])
     return device.read(labels, mesh.height)
