@@ -283,7 +283,7 @@ def test_frames_that_come_unevenly_have_the_look_of_their_time() -> None:
     [
         ("bar 3", "bar 300", r":7:9: .*the film ends"),
         ('"shrink"', '"shrimp"', r":8:11: .*no 'shrimp'; did you mean shrink"),
-        ("fade 1 bar", "fade 99 bars", r":6: .*longer than the section"),
+        ("fade 1 bar", "fade 99 bars", r":9:15: .*longer than the section"),
         ("fade 1", "dissolve 1", r":9:15: transition: no 'dissolve'"),
         ("transition", "transitoin", r":9:\d+: unknown key 'transitoin'.*did you mean transition"),
         ("edges[1]", "edges[5]", r":14:\d+: .*there are 2 of edges"),

@@ -41,6 +41,10 @@ EDGES = '[[section]]\nstyle = ["flat", "edges"]\n[curves]\n'
             r":3:7: a ends at 0:02.00 bar 3.3, and b .*; end a at 1.5s, or begin b at 2s",
         ),
         (
+            sections('name = "a"\nto = "2:46:40.25"', 'name = "b"\nfrom = "1.5s"'),
+            r":3:7: .*; end a at 1.5s, or begin b at 10000.25s",
+        ),
+        (
             sections('name = "a"', 'name = "b"\nfrom = "bar 2"'),
             r":5:9: b begins at -0:01.00 bar 2, before the film .*: bar 3 is the first in it",
         ),

@@ -143,9 +143,14 @@ def _check_order(
     if end is not None and frame < clock.frame_at(end):
         raise earlier.place_of("to").error(
             f"{earlier.name} ends at {clock.name_of(end)}, and {section.name} begins before that, "
-            f"at {clock.name_of(begin)}; end {earlier.name} at {begin:.4g}s, or begin "
-            f"{section.name} at {end:.4g}s"
+            f"at {clock.name_of(begin)}; end {earlier.name} at {_seconds(begin)}, or begin "
+            f"{section.name} at {_seconds(end)}"
         )
+
+
+def _seconds(time: float) -> str:
+    """A time as files have it."""
+    return f"{time:.3f}".rstrip("0").rstrip(".") + "s"
 
 
 def _gap(

@@ -220,14 +220,15 @@ class Show:
         first = clock.frame_at(begin)
         ends = first
         if number and section.transition.kind != "cut":
-            with told_at(section.place):
+            place = section.place_of("transition")
+            with told_at(place):
                 over = clock.later(begin, section.transition.span)
             most = section.transition.most
             if most is not None and clock.end is not None:
                 over = min(over, begin + float(most) * clock.end)
             ends = clock.frame_at(over)
             if ends > clock.frame_at(end):
-                raise section.place.error(
+                raise place.error(
                     f"the transition of {section.transition.span} into {section.name} is longer "
                     f"than the section, {end - begin:.2f} s; shorten it"
                 )
