@@ -5,6 +5,7 @@ import signal
 import subprocess
 import sys
 import time
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing
 from pathlib import Path
 
@@ -15,6 +16,7 @@ from pipeline.progress import Progress
 from pipeline.track import TrackReader
 from stages.media.writing.alone import alone
 from stages.media.writing.commit import remove_left_overs
+from stages.media.writing.place import check_folder
 from tests import media_samples as samples
 from tests.tracks import COUNT, QUICK_FLAGS, solve_to, write_clip
 from warp_kernels.errors import OutputError
@@ -146,3 +148,15 @@ def test_two_drawings_of_one_film(tmp_path: Path, capsys) -> None:
     stills = str(tmp_path / "s_##.png")
     with alone(Path(stills)):
         assert main(["render", str(track), "-o", stills, "--progress", "none"]) == 0
+
+
+def test_threads_may_try_one_folder(tmp_path: Path) -> None:
+    """None takes away what another has just made to see whether it can."""
+    usual = sys.getswitchinterval()
+    sys.setswitchinterval(1e-6)
+    try:
+        with ThreadPoolExecutor(8) as pool:
+            list(pool.map(check_folder, [tmp_path / f"{n}.mtrk" for n in range(400)]))
+    finally:
+        sys.setswitchinterval(usual)
+    assert not list(tmp_path.iterdir())

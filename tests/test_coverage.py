@@ -10,7 +10,8 @@ from tests.kernel_samples import delaunay_mesh, noise, random_mesh, snapshot_of
 from tests.oracles.coverage import covered_pixels, rounded
 from warp_kernels.color_model import CONSTANT
 from warp_kernels.device.device import Device
-from warp_kernels.drawing.gbuffer import record_gbuffer
+from warp_kernels.drawing.band_lists import BandLists
+from warp_kernels.drawing.gbuffer import fill_threads, record_gbuffer
 
 NOBODY = -1
 
@@ -67,19 +68,22 @@ def owners_by_kernel(mesh: Mesh, device: Device) -> np.ndarray:
     """The triangle of every pixel as the renderer sees it, in two bands, [H, W]."""
     cut = mesh.height // 2
     bands = []
+    lists = BandLists(device, mesh.height, mesh.height)
+    lists.write(mesh.vertices, mesh.triangles, 1.0)
     for first_row, rows in ((0, cut), (cut, mesh.height - cut)):
         band = wp.full((rows, mesh.width), NOBODY, dtype=int, device=device.warp)
         phase = record_gbuffer(
             device,
             vertices=wp.array(mesh.vertices, dtype=wp.vec2d, device=device.warp),
             triangles=wp.array(mesh.triangles, dtype=wp.vec3i, device=device.warp),
-            count=wp.array([mesh.triangle_count], dtype=int, device=device.warp),
+            lists=lists,
+            band=0,
             scale=(1.0, 1.0),
             first_row=first_row,
             samples=1,
             triangle_out=band,
         )
-        phase.resize(rows, threads=mesh.triangle_count)
+        phase.resize(rows, threads=fill_threads(device, mesh.triangle_count))
         device.run([phase])
         bands.append(band.numpy())
     return np.concatenate(bands)

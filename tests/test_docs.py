@@ -174,6 +174,7 @@ def test_pictures_are_made_by_commands_of_the_pages() -> None:
         "rabbit",
         "relief",
         "editor",
+        "editor_texture",
     }  # two by own programs
     drawn = {*readme_pictures.PICTURES, *readme_pictures.COPIED}
     assert drawn == {path.stem for path in readme_pictures.IMAGES.iterdir()} - painted

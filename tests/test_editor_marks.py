@@ -51,6 +51,7 @@ def seen(page: Page, name: str, *others: np.ndarray) -> np.ndarray:
     rows = slice(int(box["y"]), int(box["y"] + box["height"]))
     columns = slice(int(box["x"]), int(box["x"] + box["width"]))
     for _ in range(300):
+        expect(page.locator("#preparing")).to_be_hidden()
         found = shot(page)
         if all(np.abs(found[rows, columns] - other).max() > CHANGE for other in others):
             break

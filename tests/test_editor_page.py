@@ -323,6 +323,6 @@ def test_time_and_the_way_through_a_shot(browser: Browser, clip_server: Served) 
     page.keyboard.press(" ")
     page.wait_for_function("() => !trimotion.isPlaying && trimotion.frame === 11")
     page.locator("#render").click()
-    expect(page.locator("#toast")).to_contain_text("Rendering clip")
+    expect(page.locator("#written")).to_contain_text(".mp4")
     assert len(list(clip_server.studio.session.path.parent.glob("clip.2*.mp4"))) == 1
     page.close()

@@ -4,6 +4,7 @@ import re
 from pathlib import Path
 
 import av
+import cv2
 import numpy as np
 import pytest
 from av.video.reformatter import ColorRange
@@ -140,6 +141,7 @@ def test_frame_outside_the_clip_is_refused(frame: int) -> None:
 
 def _centroid(pixels: np.ndarray, color: tuple[int, int, int]) -> tuple[float, float]:
     """Give the centroid [px] of the pixels near a colour, the nearer the heavier."""
-    weights = np.clip(1.0 - np.abs(pixels - np.array(color)).max(axis=2) / 50.0, 0.0, 1.0)
-    y, x = np.indices(weights.shape) + 0.5
-    return float(np.average(x, weights=weights)), float(np.average(y, weights=weights))
+    apart = cv2.absdiff(pixels, np.full_like(pixels, color)).max(axis=2)
+    y, x = np.nonzero(apart < 50)
+    weights = 1.0 - apart[y, x] / 50.0
+    return float(np.average(x + 0.5, weights=weights)), float(np.average(y + 0.5, weights=weights))

@@ -18,12 +18,12 @@ from pipeline.timeline.easings import EASINGS, easing_name
 from pipeline.timeline.expression import parse_expression
 from pipeline.timeline.keyframes import Keyed, parse_keys
 from pipeline.timeline.mixing import mixed
-from pipeline.timeline.place import Place
 from pipeline.timeline.show import Show
 from pipeline.timeline.show_file import parse_timeline, read_timeline
 from pipeline.timeline.signals import Signals
 from pipeline.timeline.timeline import TEMPLATES, shipped_timelines
 from pipeline.timeline.times import parse_when
+from pipeline.timeline.written.place import Place
 from stages.hearing.heard import Heard, Mark
 from stages.media import probe
 from tests import media_samples as samples
@@ -283,7 +283,7 @@ def test_frames_that_come_unevenly_have_the_look_of_their_time() -> None:
     [
         ("bar 3", "bar 300", r":7:9: .*the film ends"),
         ('"shrink"', '"shrimp"', r":8:11: .*no 'shrimp'; did you mean shrink"),
-        ("fade 1 bar", "fade 99 bars", r":6: .*longer than the section"),
+        ("fade 1 bar", "fade 99 bars", r":9:15: .*longer than the section"),
         ("fade 1", "dissolve 1", r":9:15: transition: no 'dissolve'"),
         ("transition", "transitoin", r":9:\d+: unknown key 'transitoin'.*did you mean transition"),
         ("edges[1]", "edges[5]", r":14:\d+: .*there are 2 of edges"),
@@ -324,6 +324,7 @@ def test_shipped_timelines_fit_films_of_any_length(name: str, seconds: int) -> N
     clock = Clock(Fraction(25), 0, 25 * seconds, Heard.steady(seconds, timeline.bpm or 120))
     show = Show(timeline, clock, (Look(), *(one.look for one in timeline.sections)))
     show.check(0, 25 * min(seconds, 20) - 1)
+    assert show.held(0, 25 * min(seconds, 20) - 1) == ()  # nothing leaves its bounds
     assert len(show.sections) == len(timeline.sections)
 
 

@@ -5,7 +5,8 @@ import warp as wp
 
 from stages.mesh import Mesh
 from warp_kernels.device.device import Device
-from warp_kernels.drawing.gbuffer import record_gbuffer
+from warp_kernels.drawing.band_lists import BandLists
+from warp_kernels.drawing.gbuffer import fill_threads, record_gbuffer
 
 
 def triangle_of_pixels(device: Device, mesh: Mesh) -> np.ndarray:
@@ -17,21 +18,22 @@ def triangle_of_pixels(device: Device, mesh: Mesh) -> np.ndarray:
     """
     vertices = device.empty(mesh.vertex_count, wp.vec2d)
     triangles = device.empty(mesh.triangle_count, wp.vec3i)
-    count = device.empty(1, int)
+    lists = BandLists(device, mesh.height, mesh.height)
     labels = device.empty((mesh.height, mesh.width), wp.int32)
     device.write(vertices, mesh.vertices)
     device.write(triangles, mesh.triangles)
-    device.write(count, np.array([mesh.triangle_count]))
+    lists.write(mesh.vertices, mesh.triangles, 1.0)
     phase = record_gbuffer(
         device,
         vertices=vertices,
         triangles=triangles,
-        count=count,
+        lists=lists,
+        band=0,
         scale=(1.0, 1.0),
         first_row=0,
         samples=1,
         triangle_out=labels,
     )
-    phase.resize(mesh.height, threads=mesh.triangle_count)
+    phase.resize(mesh.height, threads=fill_threads(device, mesh.triangle_count))
     device.run([phase])
     return device.read(labels, mesh.height)

@@ -17,6 +17,7 @@ from pipeline.timeline.staging import show_of, with_timeline
 from pipeline.timeline.timeline import TEMPLATES, shipped_timelines
 from pipeline.track import refuse_track
 from stages.look.sheet_strip import Band, Graph, strip_of
+from stages.masks.regions import Mask
 from stages.media import (
     EncodeOptions,
     FrameRange,
@@ -28,7 +29,7 @@ from stages.media import (
     probe,
 )
 from stages.media.reading.read_options import ReadOptions
-from warp_kernels.errors import OptionError
+from warp_kernels.errors import MediaError, OptionError
 from warp_kernels.styles.color import parse_color
 
 WIDTH, PICTURES, PLACES = 1600, 12, 400
@@ -88,10 +89,24 @@ def check_timeline(arguments: argparse.Namespace) -> str:
     assert show is not None
     last = info.last_frame or info.first_frame
     show.check(info.first_frame, last)
+    _check_masks(show, (info.width, info.height))
+    notes = (*show.notes, *show.held(info.first_frame, last))
     curves = list(_curves(show, info.first_frame, last))
     if arguments.output is not None:
         _draw(show, curves, info, job.solve.read, Path(arguments.output), arguments.overwrite)
-    return _as_json(show, curves) if arguments.json else _as_table(show, curves, source)
+    if arguments.json:
+        return _as_json(show, curves, notes)
+    return _as_table(show, curves, source, notes)
+
+
+def _check_masks(show: Show, size: tuple[int, int]) -> None:
+    """Refuse masks of sections that cannot be read, or have another size than the film."""
+    for section in show.timeline.sections:
+        for region in section.look.regions if "region" in section.entries else ():
+            try:
+                Mask(region.mask, size).close()
+            except MediaError as error:
+                raise section.place_of("region").error(f"region: {error}") from error
 
 
 def _text_of(arguments: argparse.Namespace) -> str:
@@ -115,27 +130,22 @@ def _end_of(show: Show, number: int) -> float:
 def _curves(show: Show, first: int, last: int) -> Iterator[OverTime]:
     """Everything that changes, at even places of the film."""
     frames = np.linspace(first, last, PLACES).round().astype(int)
-    sections = [
-        max(i for i, one in enumerate(show.sections) if i == 0 or one.first <= k) for k in frames
-    ]
-    names = dict.fromkeys(str(line.target) for one in show.sections for line in one.lines)
+    sections = [show.number_at(int(frame)) for frame in frames]
+    lines = [{str(line.target): line for line in one.lines} for one in show.sections]
+    names = dict.fromkeys(name for one in lines for name in one)
     names |= dict.fromkeys(key for one in show.sections for key in one.section.mesh)
     for name in names:
-        values = [
-            _value(show, show.sections[number], int(frame), name)
-            for frame, number in zip(frames, sections, strict=True)
-        ]
+        values: list[Any] = []
+        for frame, number in zip(frames.tolist(), sections, strict=True):
+            line = lines[number].get(name)
+            if line is None:
+                values.append(show.sections[number].section.mesh.get(name))
+            else:
+                values.append(line.at(frame, show.clock.time_of_frame(frame), frame))
         yield OverTime(name, values)
 
 
-def _value(show: Show, placed: Placed, frame: int, name: str) -> Any:
-    for line in placed.lines:
-        if str(line.target) == name:
-            return line.at(frame, show.clock.time_of_frame(frame), frame)
-    return placed.section.mesh.get(name)
-
-
-def _as_table(show: Show, curves: list[OverTime], source: Path) -> str:
+def _as_table(show: Show, curves: list[OverTime], source: Path, notes: tuple[str, ...]) -> str:
     """For people."""
     clock = show.clock
     length = "unknown" if clock.end is None else clock.name_of(clock.end).split(" bar")[0]
@@ -155,6 +165,8 @@ def _as_table(show: Show, curves: list[OverTime], source: Path) -> str:
         wide = max(len(curve.name) for curve in curves) + 2
         lines += ["", f"{'curve':<{wide}}values"]
         lines += [f"{curve.name:<{wide}}{curve.bounds}" for curve in curves]
+    if notes:
+        lines += ["", *(f"note: {note}" for note in notes)]
     return "\n".join(lines)
 
 
@@ -163,7 +175,7 @@ def _stack(placed: Placed) -> str:
     return " + ".join(type(style).__name__.lower() for style in placed.look.styles)
 
 
-def _as_json(show: Show, curves: list[OverTime]) -> str:
+def _as_json(show: Show, curves: list[OverTime], notes: tuple[str, ...]) -> str:
     """For programs."""
     sections = [
         {
@@ -178,7 +190,8 @@ def _as_json(show: Show, curves: list[OverTime]) -> str:
     ]
     beats = [] if show.clock.heard is None else show.clock.heard.beats.tolist()
     ranges = {curve.name: curve.bounds for curve in curves}
-    return json.dumps({"sections": sections, "curves": ranges, "beats": beats}, indent=2)
+    found = {"sections": sections, "curves": ranges, "beats": beats, "notes": notes}
+    return json.dumps(found, indent=2)
 
 
 def _draw(

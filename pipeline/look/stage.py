@@ -73,6 +73,7 @@ class Stage:
         self._wardrobe, self._framing, self._model, self._show = wardrobe, framing, model, show
         self._steady = Instant(Setting(0, look))
         self._is_alpha = False
+        self._film = film
         self._curtains: dict[str, Curtain] = {}
         for kind in () if show is None else show.transitions:
             if kind in WAITING:
@@ -87,8 +88,10 @@ class Stage:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What is told of what a timeline hears, one sentence each."""
-        return () if self._show is None else self._show.notes
+        """What is told of a timeline, one sentence each."""
+        if self._show is None:
+            return ()
+        return (*self._show.notes, *self._show.held(*self._film))
 
     def looks_at(self, index: int, shown: Fraction, shot: int) -> Looks:
         """What is drawn at a frame.

@@ -50,6 +50,8 @@ class Option:
     """The values that it may have, if they are few."""
     registry: Registry[Any] | None = None
     """The family whose members it names."""
+    is_single: bool = False
+    """Whether two of it are a mistake; else the last one counts."""
 
     @property
     def is_switch(self) -> bool:
@@ -155,11 +157,27 @@ def with_preset(given: Mapping[str, object], preset: Mapping[str, object]) -> di
     return {**{key: preset[key] for key in preset if key not in beaten}, **given}
 
 
+class _Once(argparse.Action):
+    """An option that is refused if it is given twice: nobody means the last one alone."""
+
+    def __call__(
+        self,
+        parser: argparse.ArgumentParser,
+        namespace: argparse.Namespace,
+        values: object,
+        option_string: str | None = None,
+    ) -> None:
+        if hasattr(namespace, self.dest):
+            both = f"{getattr(namespace, self.dest)} and {values}"
+            raise argparse.ArgumentError(self, f"is given twice, {both}; leave one out")
+        setattr(namespace, self.dest, values)
+
+
 def _add(group: argparse._ActionsContainer, option: Option) -> None:
     more: dict[str, Any] = {"action": "store_false" if option.default else "store_true"}
     if not option.is_switch:
         more = {
-            "action": "append" if option.is_repeatable else "store",
+            "action": _Once if option.is_single else "append" if option.is_repeatable else "store",
             "type": partial(read_value, option.kind),
             "choices": option.choices,
             "metavar": option.metavar,
@@ -190,4 +208,7 @@ def _option(field: Field[Any], group: str) -> Option:
         text += f" (default: {default:g})" if kind == "float" else f" (default: {default})"
     usual = {"int": "N", "float": "X"}.get(kind, field.name.split("_")[-1].upper())
     metavar = said.get("metavar", "|".join(registry or choices or [usual]))
-    return Option(flag, field.name, group, kind, text, metavar, default, choices, registry)
+    is_single = bool(said.get("is_single"))
+    return Option(
+        flag, field.name, group, kind, text, metavar, default, choices, registry, is_single
+    )

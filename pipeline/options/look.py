@@ -147,6 +147,7 @@ class Look:
             "pulse, build-up, ink-to-colour, strobe-safe",
             "metavar": "FILE.toml|NAME",
             "group": "time",
+            "is_single": True,
         },
     )
     """A file with what changes over time, or the name of a shipped one."""

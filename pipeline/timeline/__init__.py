@@ -2,6 +2,7 @@
 
     show_file, sections, keyframes, expression    read a file: mistakes are told with their line
     clock, signals                                what time it is at a frame: seconds, beats, bars
+    order                                         when sections begin and end in one film
     show                                          the look of a frame
     course                                        what of it changes meshes
 

@@ -172,22 +172,23 @@ class Clock:
         """A time as people say it, for messages and tables: `0:12.50`, and its bar if it has one.
 
         Args:
-            time: [s]
+            time: [s]; less than 0 before the film begins: `-0:01.00`.
         """
-        minutes, seconds = divmod(round(time, 2), 60)
-        text = f"{int(minutes)}:{seconds:05.2f}"
-        if self.heard is None or not self.heard.has_beats:
-            return text
-        return f"{text} bar {self.bar_name(time)}"
+        minutes, seconds = divmod(abs(round(time, 2)), 60)
+        text = f"{'-' if round(time, 2) < 0 else ''}{int(minutes)}:{seconds:05.2f}"
+        bar = "" if self.heard is None or not self.heard.has_beats else self.bar_name(time)
+        return f"{text} bar {bar}" if bar else text
 
     def bar_name(self, time: float) -> str:
-        """The bar and the beat of a time, such as `9.3`; of one before the first bar its beat.
+        """The bar and the beat of a time, such as `9.3`; none before the first bar.
 
         Args:
             time: [s]
         """
         beats = self.beats
         bar = int(np.floor(float(beats.bar_at(time)) + 1e-3))
+        if bar < 1:  # bars count from 1, and no other can be written
+            return ""
         start = float(beats.beat_at(beats.time_of_bar(bar)))
         beat = float(beats.beat_at(time)) - start + 1
         return f"{bar}" if abs(beat - 1) < 0.02 else f"{bar}.{round(beat, 2):g}"

@@ -7,7 +7,6 @@ from pipeline.options.look import Look
 from pipeline.timeline.easings import STEPS
 from pipeline.timeline.expression import parse_expression
 from pipeline.timeline.keyframes import Key, is_keyframes, parse_keys
-from pipeline.timeline.place import Place, Places, Table
 from pipeline.timeline.targets import (
     MESH,
     OWN,
@@ -20,6 +19,7 @@ from pipeline.timeline.targets import (
 )
 from pipeline.timeline.timeline import Curve
 from pipeline.timeline.times import START
+from pipeline.timeline.written.place import Place, Places, Table
 from warp_kernels.errors import OptionError
 
 
@@ -82,7 +82,8 @@ def _curve(name: str, value: Any, place: Place, looks: Sequence[Look]) -> Curve:
         _check_steps(target, kind, keys)
         return Curve(target, keys, place)
     if kind.is_number and not kind.is_fixed:
-        return Curve(target, parse_expression(value, place), place)
+        begin = len(value) - len(value.lstrip())
+        return Curve(target, parse_expression(value.strip(), place.after(begin)), place)
     try:
         return Curve(target, (Key(START, kind.read(value.strip()), "step", place),), place)
     except (ValueError, OptionError) as error:

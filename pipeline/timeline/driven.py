@@ -62,6 +62,30 @@ class Driven:
         begin = first // CHUNK * CHUNK
         return np.concatenate(parts)[first - begin : last + 1 - begin]
 
+    def held(self, first: int, last: int) -> str | None:
+        """What is told if an expression leaves the bounds of its parameter; None if it does not.
+
+        Args:
+            first: Number of the first frame that is looked at.
+            last: Number of the last one.
+        """
+        assert isinstance(self.course, Expression)
+        if self.course.changes_with_shots:  # shots are not known before frames are drawn
+            return None
+        values = self.values(first, last)
+        bounds = np.array([self.kind.least, self.kind.most])
+        slack = 1e-6 * np.maximum(1.0, np.abs(values))
+        out = (values < bounds[0] - slack) | (values > bounds[1] + slack)
+        if not out.any():
+            return None
+        place = int(out.argmax())
+        value = values[place]
+        bound, word = (bounds[0], "least") if value < bounds[0] else (bounds[1], "most")
+        return (
+            f"{self.target} would be {value:.4g} at frame {first + place} and is held at "
+            f"{bound:g}, the {word} that it takes"
+        )
+
     def turns(self, first: int, last: int) -> set[int]:
         """Frames at which the value is of another kind than before: at keys, at bounds.
 

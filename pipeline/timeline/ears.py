@@ -64,6 +64,9 @@ def _listened(timeline: Timeline, hearing: Hearing, info: MediaInfo) -> Told:
     try:
         found = _listen(path, timeline.meter, path.stat().st_mtime_ns)
     except (MediaError, OSError) as error:
+        if isinstance(error, OSError) and song is not None:
+            reason = str(error.strerror or error).lower()
+            raise MediaError(song, f"cannot be read ({reason})", "check the name") from error
         if song is not None:
             raise
         return None, (f"the film's sound is not heard: {error}",)

@@ -15,15 +15,15 @@ import numpy as np
 
 from pipeline.options.nearest import nearest
 from pipeline.timeline.functions import FUNCTIONS, FaultError, Given, Length, Value, division
-from pipeline.timeline.place import Place
 from pipeline.timeline.signals import EVENTS, STRENGTHS, VARIABLES, Signals
 from pipeline.timeline.times import parse_span
+from pipeline.timeline.written.place import Place
 from warp_kernels.errors import OptionError
 
 MOST_CHARACTERS = 1000
 """Longer texts are no expressions."""
 MOST_DEPTH = 40
-"""Deeper brackets are no expressions either."""
+"""Deeper brackets are no expressions either: Python's own parser knows a bound, too."""
 MOST_NESTED = 100
 """Operations within operations; `1 + 2 + 3` is one within another."""
 
@@ -119,8 +119,14 @@ def parse_expression(text: str, place: Place) -> Expression:
     Raises:
         OptionError: If it holds anything that is not allowed; told with its column.
     """
-    if len(text) > MOST_CHARACTERS or text.count("(") > MOST_DEPTH:
+    if len(text) > MOST_CHARACTERS:
         raise place.error(f"the expression is too long ({len(text)} characters); shorten it")
+    depth = _depth(text)
+    if depth > MOST_DEPTH:
+        raise place.error(
+            f"the expression nests too deeply ({depth} brackets one within another, at most "
+            f"{MOST_DEPTH}); leave some out"
+        )
     try:
         plain, columns, lengths = _without_units(text)
     except ValueError as error:
@@ -130,13 +136,14 @@ def parse_expression(text: str, place: Place) -> Expression:
             warnings.simplefilter("ignore")  # Python frowns upon `1if`, and we say what is wrong
             tree = ast.parse(plain, mode="eval")
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
-        at = max(getattr(error, "offset", 1) or 1, 1) - 1
+        at = _start_of(plain, getattr(error, "lineno", 1) or 1)
+        at += max(getattr(error, "offset", 1) or 1, 1) - 1
         here = place.after(columns[min(at, len(columns) - 1)])
         reason = getattr(error, "msg", "") or "it cannot be read"
         raise here.error(
             f"{text!r} is no expression ({reason}); write 1 + 2*sin(t), or keyframes such as 0s: 1"
         ) from error
-    reader = _Reader(text, place, columns, lengths)
+    reader = _Reader(text, plain, place, columns, lengths)
     code = reader.code(tree.body)
     return Expression(text, code, frozenset(reader.names), tuple(lengths.values()), place)
 
@@ -159,13 +166,28 @@ def _without_units(text: str) -> tuple[str, list[int], dict[str, Length]]:
     return plain + text[begin:], columns, lengths
 
 
+def _depth(text: str) -> int:
+    """How many brackets stand one within another at most."""
+    deepest = depth = 0
+    for letter in text:
+        depth += (letter in "([{") - (letter in ")]}")
+        deepest = max(deepest, depth)
+    return deepest
+
+
+def _start_of(plain: str, line: int) -> int:
+    """Where a line of a text begins, counted from 1."""
+    return sum(len(one) + 1 for one in plain.split("\n")[: line - 1])
+
+
 class _Reader:
     """Turns the nodes of one expression into functions."""
 
     def __init__(
-        self, text: str, place: Place, columns: list[int], lengths: dict[str, Length]
+        self, text: str, plain: str, place: Place, columns: list[int], lengths: dict[str, Length]
     ) -> None:
         self._text = text
+        self._plain = plain
         self._place = place
         self._columns = columns
         self._lengths = lengths
@@ -324,11 +346,18 @@ class _Reader:
         return Given(None, code, None, fixed)
 
     def _column(self, node: ast.expr) -> int:
-        return self._columns[min(node.col_offset, len(self._columns) - 1)]
+        return self._place_of(node.lineno, node.col_offset)
+
+    def _place_of(self, line: int, offset: int) -> int:
+        """Where a character stands in the text; Python counts bytes of a line."""
+        begin = _start_of(self._plain, line)
+        before = self._plain[begin:].encode()[:offset]
+        at = begin + len(before.decode("utf-8", "replace"))
+        return self._columns[min(at, len(self._columns) - 1)]
 
     def _refuse(self, node: ast.expr, problem: str, remedy: str) -> NoReturn:
         begin = self._column(node)
-        end = self._columns[min(node.end_col_offset or 0, len(self._columns) - 1)]
+        end = self._place_of(node.end_lineno or node.lineno, node.end_col_offset or 0)
         part = self._text[begin : max(end, begin + 1)].strip() or self._text
         raise self._place.after(begin).error(f"{part!r} {problem}; {remedy}")
 

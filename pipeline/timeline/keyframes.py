@@ -13,9 +13,9 @@ from pipeline.options.nearest import nearest
 from pipeline.timeline.clock import Clock
 from pipeline.timeline.easings import EASINGS, STEPS, easing_name
 from pipeline.timeline.mixing import mixed
-from pipeline.timeline.place import Place
 from pipeline.timeline.targets import is_color
 from pipeline.timeline.times import When, parse_when
+from pipeline.timeline.written.place import Place
 from warp_kernels.errors import OptionError
 
 Reader = Callable[[str], Any]
@@ -118,7 +118,7 @@ class Keyed:
                 raise key.place.error(error) from error
             frame = clock.frame_at(exact)
             if frames and frame <= frames[-1]:
-                raise key.place.error(_disorder(frame, frames[-1]))
+                raise key.place.error(_disorder(frame, frames[-1], clock.first))
             if clock.count is not None and frame > clock.first + clock.count:
                 raise key.place.error(
                     f"{clock.name_of(exact)} is after the end of the film at "
@@ -148,7 +148,9 @@ def runs_between(one: str, other: str) -> bool:
     return is_color(one) and is_color(other)
 
 
-def _disorder(frame: int, before: int) -> str:
+def _disorder(frame: int, before: int, first: int) -> str:
+    if frame < first:
+        return f"the key is at frame {frame}, before the film begins; leave it out or move it"
     if frame == before:
         return f"two keys fall on frame {frame}; leave one out or move it by a frame"
     return f"the key at frame {frame} comes after that at frame {before}; put them in order"

@@ -12,10 +12,10 @@ from pipeline.options.command_line import Option, job_options
 from pipeline.options.look import Look
 from pipeline.options.nearest import nearest
 from pipeline.timeline.curves import read_curves
-from pipeline.timeline.place import Places, Table
 from pipeline.timeline.targets import MESH, OWN, TONES, Target, kind_of_target
 from pipeline.timeline.timeline import CUT, Section, Transition
 from pipeline.timeline.times import START, When, parse_span, parse_when
+from pipeline.timeline.written.place import Places, Table
 from warp_kernels.errors import OptionError, TrimotionError
 
 KEYS = ("from", "to", "name", "transition", "curves")
@@ -73,7 +73,7 @@ def read_section(table: Mapping[str, Any], number: int, look: Look, places: Plac
         curves=read_curves(table.get("curves", {}), (*where, "curves"), [own], places),
         mesh=_mesh(table, where, look, places),
         place=places.of(where),
-        begin_place=places.of(where, "from"),
+        entries={key: places.of(where, key) for key in table},
     )
 
 

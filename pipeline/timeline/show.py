@@ -2,7 +2,6 @@
 
 from bisect import bisect_right
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Any
@@ -12,7 +11,7 @@ from pipeline.timeline.clock import Clock
 from pipeline.timeline.driven import Driven
 from pipeline.timeline.expression import Expression
 from pipeline.timeline.keyframes import Keyed
-from pipeline.timeline.place import Place
+from pipeline.timeline.order import placed_in_time, told_at
 from pipeline.timeline.targets import (
     OWN,
     PICTURE,
@@ -20,8 +19,8 @@ from pipeline.timeline.targets import (
     kind_of_target,
     with_members,
 )
-from pipeline.timeline.timeline import CUT, Curve, Section, Timeline, Transition
-from warp_kernels.errors import OptionError
+from pipeline.timeline.timeline import Curve, Section, Timeline, Transition
+from pipeline.timeline.written.place import Place
 
 
 @dataclass(frozen=True)
@@ -89,9 +88,10 @@ class Show:
         notes: tuple[str, ...] = (),
     ) -> None:
         self.timeline = timeline
-        self.notes = notes
         self.clock = clock
-        begins = list(_begins(timeline, clock, looks))
+        told: list[str] = []
+        begins = list(placed_in_time(timeline, clock, looks, told))
+        self.notes = (*notes, *told)
         self.sections: list[Placed] = []
         """The sections, in order."""
         for number, (section, look, begin) in enumerate(begins):
@@ -112,7 +112,7 @@ class Show:
         """
         time = self.clock.time_of_frame(index, shown)
         frame = self.clock.frame_at(time)  # where frames come unevenly, their times count
-        number = self._number_at(frame)
+        number = self.number_at(frame)
         placed = self.sections[number]
         scene = self._scene(number, index, time, shot)
         if frame >= placed.ends or number == 0:
@@ -121,8 +121,12 @@ class Show:
         before = self._scene(number - 1, index, time, shot)
         return Instant(scene, before, placed.section.transition, share)
 
-    def _number_at(self, frame: int) -> int:
-        """Number of the section that a frame belongs to; frames before the first are its own."""
+    def number_at(self, frame: int) -> int:
+        """Number of the section that a frame belongs to; frames before the first are its own.
+
+        Args:
+            frame: Its number, at an even rate.
+        """
         return max(0, bisect_right(self.sections, frame, key=lambda one: one.first) - 1)
 
     def _seen(self, first: int, last: int) -> Iterator[tuple[int, Placed, int, int]]:
@@ -172,7 +176,7 @@ class Show:
             index: Number of the frame in the source.
             name: One of `targets.MESH`.
         """
-        placed = self.sections[self._number_at(index)]
+        placed = self.sections[self.number_at(index)]
         for line in placed.lines:
             if str(line.target) == name:
                 return float(line.at(index, self.clock.time_of_frame(index), 0))
@@ -194,20 +198,37 @@ class Show:
                 if isinstance(line.course, Expression) and (is_drawn or line.target.is_mesh):
                     line.values(begin, end)
 
+    def held(self, first: int, last: int) -> tuple[str, ...]:
+        """What is told of expressions that leave the bounds of their parameters, once for each.
+
+        Args:
+            first: Number of the first frame that is looked at.
+            last: Number of the last one.
+        """
+        told: dict[Place, str] = {}
+        for _, placed, begin, end in self._seen(first, last):
+            for line in placed.lines:
+                if isinstance(line.course, Expression) and line.course.place not in told:
+                    note = line.held(begin, end)
+                    if note is not None:
+                        told[line.course.place] = f"{line.course.place}: {note}"
+        return tuple(told.values())
+
     def _place(self, number: int, section: Section, look: Look, begin: float, end: float) -> None:
         """Put a section at its time."""
         clock, timeline = self.clock, self.timeline
         first = clock.frame_at(begin)
         ends = first
         if number and section.transition.kind != "cut":
-            with _told_at(section.place):
+            place = section.place_of("transition")
+            with told_at(place):
                 over = clock.later(begin, section.transition.span)
             most = section.transition.most
             if most is not None and clock.end is not None:
                 over = min(over, begin + float(most) * clock.end)
             ends = clock.frame_at(over)
             if ends > clock.frame_at(end):
-                raise section.place.error(
+                raise place.error(
                     f"the transition of {section.transition.span} into {section.name} is longer "
                     f"than the section, {end - begin:.2f} s; shorten it"
                 )
@@ -218,64 +239,6 @@ class Show:
             *_lines(section.curves, look, clock, begin, (begin, end)),
         ]
         self.sections.append(Placed(section, look, first, ends, tuple(lines)))
-
-
-def _begins(
-    timeline: Timeline, clock: Clock, looks: tuple[Look, ...]
-) -> Iterator[tuple[Section, Look, float]]:
-    """Sections with their looks and beginnings [s], and the gaps that ends leave between them."""
-    base, before, gap = looks[0], 0.0, None
-    last = -1
-    for number, (section, look) in enumerate(zip(timeline.sections, looks[1:], strict=True)):
-        place = section.begin_place
-        with _told_at(place):
-            begin = clock.time_of(section.begin, before)
-        if gap is not None and gap < begin - 0.5 / float(clock.rate):
-            yield _gap(timeline, section, gap, base)
-            last = clock.frame_at(gap)
-        frame = clock.frame_at(begin)
-        if number and clock.count == 1:
-            raise place.error(
-                f"{section.name} would begin later, and the source has one frame; take a timeline "
-                "of one section, or a film"
-            )
-        if number and frame <= last:
-            raise place.error(
-                f"{section.name} begins at {clock.name_of(begin)}, and the section before it ends "
-                f"or begins at frame {last}; put sections in order"
-            )
-        if clock.count is not None and frame >= clock.first + clock.count:
-            raise place.error(
-                f"{section.name} begins at {clock.name_of(begin)}, and the film ends at "
-                f"{clock.name_of(clock.end or 0.0)}; leave it out, or begin earlier"
-            )
-        yield section, look, begin
-        before, last = begin, frame
-        gap = None
-        if section.end is not None:
-            with _told_at(section.place):
-                gap = clock.time_of(section.end, begin)
-        if gap is not None and clock.frame_at(gap) <= frame:
-            raise section.place.error(f'{section.name} ends before it begins; write to = "+4s"')
-    if gap is not None and (clock.end is None or gap < clock.end):
-        yield _gap(timeline, timeline.sections[-1], gap, base)
-
-
-def _gap(
-    timeline: Timeline, near: Section, begin: float, base: Look
-) -> tuple[Section, Look, float]:
-    """What is seen where a section has ended and none has begun."""
-    section = replace(near, name="between", look=base, curves=(), mesh={}, transition=CUT)
-    return section, base, begin
-
-
-@contextmanager
-def _told_at(place: Place) -> Iterator[None]:
-    """What a time cannot be is told with the place where it stands."""
-    try:
-        yield
-    except OptionError as error:
-        raise place.error(error) from error
 
 
 def _lines(

@@ -1,7 +1,6 @@
 """Read a timeline: a TOML file, or the name of a shipped one."""
 
 import os
-import re
 import tomllib
 from collections.abc import Mapping
 from pathlib import Path
@@ -10,7 +9,6 @@ from typing import Any
 from pipeline.options.look import Look
 from pipeline.options.nearest import nearest
 from pipeline.timeline.curves import read_curves
-from pipeline.timeline.place import Place, Places, Table, places_of
 from pipeline.timeline.sections import read_section
 from pipeline.timeline.timeline import (
     CUT,
@@ -20,6 +18,8 @@ from pipeline.timeline.timeline import (
     shipped_timelines,
 )
 from pipeline.timeline.times import START
+from pipeline.timeline.written.place import Place, Places, Table, places_of
+from pipeline.timeline.written.toml_faults import fault_of
 from stages.hearing.beats_file import read_beats
 from stages.hearing.heard import Heard
 from stages.media.text_file import read_text
@@ -27,7 +27,6 @@ from warp_kernels.errors import OptionError, TrimotionError
 
 TOP = ("title", "beats", "bpm", "meter", "section", "curves")
 """What stands on top."""
-_AT = re.compile(r"\s*\(at line (\d+), column (\d+)\)")
 MOST_TEMPO = 1000.0
 """Beats a minute; more are a mistake."""
 
@@ -50,6 +49,12 @@ def read_timeline(name: str, look: Look) -> Timeline:
         raise OptionError(
             f"--timeline {name}: cannot be read ({str(error.strerror).lower()}); give a TOML file "
             f"or one of {', '.join(shipped_timelines())}"
+        ) from error
+    except UnicodeDecodeError as error:
+        line = error.object.count(b"\n", 0, error.start) + 1
+        raise OptionError(
+            f"--timeline {name}: is no text in UTF-8 (line {line}); save it as UTF-8, or give a "
+            "TOML file"
         ) from error
     except ValueError as error:
         raise OptionError(f"--timeline {name}: is no text ({error}); give a TOML file") from error
@@ -80,7 +85,8 @@ def parse_timeline(text: str, file: str, look: Look) -> Timeline:
     sections = [read_section(one, number, look, places) for number, one in enumerate(listed)]
     first = Place(file)
     if not sections or sections[0].begin != START:
-        sections.insert(0, Section("start", START, None, look, CUT, (), {}, first, first))
+        assumed = Section("start", START, None, look, CUT, (), {}, first, is_assumed=True)
+        sections.insert(0, assumed)
     looks = [section.look for section in sections]
     curves = read_curves(tables.get("curves", {}), ("curves",), looks, places)
     bpm, meter = _tempo(tables, places)
@@ -95,16 +101,7 @@ def _tables(text: str, file: str) -> dict[str, Any]:
     try:
         return tomllib.loads(text)
     except (ValueError, RecursionError) as error:  # plain ones are of numbers with many digits
-        found = _AT.search(str(error))
-        place = Place(file, int(found[1]), int(found[2])) if found else Place(file)
-        if "(at end of document)" in str(error):
-            place = Place(file, max(1, len(text.rstrip("\n").split("\n"))))
-        reason = _AT.sub("", str(error)).replace(" (at end of document)", "")
-        if not isinstance(error, tomllib.TOMLDecodeError):
-            reason = reason.partition(";")[0]  # without Python's own remedy
-        raise place.error(
-            f"no TOML ({reason[:1].lower()}{reason[1:]}); texts stand in quotes, lists in brackets"
-        ) from error
+        raise fault_of(error, text, file) from error
 
 
 def _beats(tables: Mapping[str, Any], places: Places) -> Heard | None:

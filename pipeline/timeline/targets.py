@@ -100,8 +100,17 @@ def slots_of(look: Look) -> Iterator[Slot]:
 
 def found_in(look: Look, target: Target) -> Slot | None:
     """The member that a target means, if a look has it."""
-    named = [slot for slot in slots_of(look) if slot.name == target.owner]
+    named = _by_name(look).get(target.owner, [])
     return named[target.number] if target.number < len(named) else None
+
+
+@lru_cache(maxsize=16)
+def _by_name(look: Look) -> Mapping[str, list[Slot]]:
+    """The members of a look by their names, in order: many curves ask for the same look."""
+    found: dict[str, list[Slot]] = {}
+    for slot in slots_of(look):
+        found.setdefault(slot.name, []).append(slot)
+    return found
 
 
 def parameter_of(slot: Slot, target: Target) -> Field[Any]:

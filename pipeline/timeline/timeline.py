@@ -1,17 +1,17 @@
 """What a file says of a film: sections, transitions and curves, not yet at their times."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from pathlib import Path
 
 from pipeline.options.look import Look
 from pipeline.timeline.expression import Expression
 from pipeline.timeline.keyframes import Key
-from pipeline.timeline.place import Place
 from pipeline.timeline.signals import STRENGTHS
 from pipeline.timeline.targets import MESH, Target
 from pipeline.timeline.times import START, Span, When
+from pipeline.timeline.written.place import Place
 from stages.hearing.heard import Heard
 
 TEMPLATES = Path(__file__).parent / "templates"
@@ -80,8 +80,18 @@ class Section:
     """What changes meshes, by the names of `targets.MESH`."""
     place: Place
     """Where its header stands in the file."""
-    begin_place: Place
-    """Where its beginning stands."""
+    entries: Mapping[str, Place] = field(default_factory=dict)
+    """Where its entries stand, by key."""
+    is_assumed: bool = False
+    """Whether no file says it: it is what is seen before the first one that does."""
+
+    def place_of(self, key: str) -> Place:
+        """Where an entry stands, or the header if there is none.
+
+        Args:
+            key: Its key.
+        """
+        return self.entries.get(key, self.place)
 
 
 @dataclass(frozen=True, eq=False)

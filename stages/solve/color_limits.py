@@ -121,17 +121,23 @@ class Limiter:
             return coefficients, energies
         best, had, least = coefficients, found.counts, found.counts
         coefficients, energies, moved = best.copy(), energies.copy(), best.copy()
-        told = np.zeros(mesh.triangle_count)
+        told, shifts = np.zeros(mesh.triangle_count), np.zeros((mesh.triangle_count, CHANNELS))
         for step in STEPS:
             origins = centres_of(mesh.corners[rows])
-            local = with_origins(self._workspace.model, moved[rows], origins)
-            local += step * self._corrections(mesh, rows, found)
+            changes = step * self._corrections(mesh, rows, found)
+            local = with_origins(self._workspace.model, moved[rows], origins) + changes
             moved[rows] = with_origins(self._workspace.model, local, -origins)
-            found = self._nearby.measure(moved, np.where(least > 0, UNKNOWN, 0.0), limits)
-            better = found.counts < least
+            shifts[rows] += changes[:, :, 0]
+            added = 0.5 * mesh.areas[rows] * (shifts[rows] ** 2).sum(axis=1)  # at least, about
+            rows = rows[added <= (DEAREST - 1.0) * energies[rows]]
+            tried = np.zeros(mesh.triangle_count)
+            tried[rows] = UNKNOWN
+            found = self._nearby.measure(moved, tried, limits)
+            better = rows[found.counts[rows] < least[rows]]
             coefficients[better], told[better] = moved[better], np.inf
-            least = np.minimum(least, found.counts)
-            if not least.any():
+            least = np.where(tried > 0, np.minimum(least, found.counts), least)
+            rows = rows[least[rows] > 0]
+            if not len(rows):
                 break
         left = self._nearby.measure(coefficients, told, limits).energies
         dear = left > DEAREST * energies

@@ -8,6 +8,7 @@ import warp as wp
 
 from warp_kernels.device.device import Device
 from warp_kernels.device.phase import Phase
+from warp_kernels.drawing.band_lists import BandLists
 from warp_kernels.drawing.coats import coats_of
 from warp_kernels.drawing.gbuffer import (
     LEAST_ROWS,
@@ -84,7 +85,7 @@ class Canvas:
         """Numbers of a pixel: 3, or 4 with alpha."""
         self._pixels = device.empty((height, width, self.channels), wp.uint8)
         self._curved = device.empty(1, int)
-        self._count = device.empty(1, int)
+        self._lists = BandLists(device, height, self._band)
         self._steady = self._steady_scene(needs_source=any(s.needs_source for s in styles))
         self._parameters = self._parameters_of(styles, textures)
         self._allocate(vertices=512, triangles=1024, layers=1024, links=1)
@@ -198,7 +199,8 @@ class Canvas:
             self._write_layers(layers)
         self.device.write(self._vertices, vertices)
         self.device.write(self._triangles, triangles)
-        self.device.write(self._count, np.array([len(triangles)]))
+        if self._lists.write(vertices, triangles, self._scale[1]):
+            self._recorded.clear()
         self._write_paint(paint, shapes=not self._is_even or layers is not None)
         if moved is not None:
             self.device.write(self._moved.anchors, rows.anchors)
@@ -343,18 +345,19 @@ class Canvas:
         """
         if fades not in self._recorded:
             tops = range(0, self.output[1], self._band)
-            bands = [(top, *self._record_band(top, fades=fades)) for top in tops]
+            bands = [(top, *self._record_band(n, top, fades=fades)) for n, top in enumerate(tops)]
             self._recorded[fades] = bands
         return self._recorded[fades]
 
-    def _record_band(self, top: int, *, fades: bool) -> tuple[Phase, ...]:
+    def _record_band(self, band: int, top: int, *, fades: bool) -> tuple[Phase, ...]:
         """Record what empties, fills and shades the band that begins with output row `top`."""
         scale = self._scale
         filling = record_gbuffer(
             self.device,
             vertices=self._vertices,
             triangles=self._triangles,
-            count=self._count,
+            lists=self._lists,
+            band=band,
             scale=(scale[0] * self.samples, scale[1] * self.samples),
             first_row=top * self.samples,
             samples=self.samples,

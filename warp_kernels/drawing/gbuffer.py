@@ -11,6 +11,7 @@ import warp as wp
 from warp_kernels.device.device import Device
 from warp_kernels.device.exact import EXACT
 from warp_kernels.device.phase import Phase
+from warp_kernels.drawing.band_lists import BandLists
 from warp_kernels.raster import SUBPIXELS, column_of, to_fixed, walk_edge
 
 wp.set_module_options(EXACT)
@@ -23,6 +24,8 @@ LEAST_ROWS = 1
 CARD_LANES, CARD_STRIPS = 32, 32
 """On a card so many threads fill a row of a triangle, and so many strips of it are filled at once:
 a large one would else keep a single thread busy for longer than all others together."""
+ONCE = 1 << 30
+"""On a card each thread fills one triangle: the next is beyond the list."""
 
 
 def band_rows(device: Device, output: tuple[int, int], samples: int) -> int:
@@ -39,8 +42,8 @@ def band_rows(device: Device, output: tuple[int, int], samples: int) -> int:
 
 
 def fill_threads(device: Device, triangles: int) -> int:
-    """Kernel threads that fill so many triangles, see `Phase.resize`."""
-    return triangles * CARD_LANES * CARD_STRIPS if device.is_cuda else triangles
+    """Kernel threads that fill so many triangles, see `Phase.resize`: on the CPU one for all."""
+    return triangles * CARD_LANES * CARD_STRIPS if device.is_cuda else 1
 
 
 @wp.func_native("""
@@ -86,38 +89,10 @@ def strip_of(span: wp.vec2i, samples: int, strip: int, strips: int) -> wp.vec2i:
     return wp.vec2i(span[0] * samples + strip * share, wp.min(share, rows - strip * share))
 
 
-@wp.kernel(enable_backward=False)
-def fill_triangles(
-    span: wp.array(dtype=wp.vec2i),
-    # In:
-    vertices: wp.array(dtype=wp.vec2d),
-    triangles: wp.array(dtype=wp.vec3i),
-    count: wp.array(dtype=int),
-    scale: wp.vec2d,
-    first_row: int,
-    samples: int,
-    overlaps: int,
-    lanes: int,
-    strips: int,
-    # Out:
-    triangle_out: wp.array2d(dtype=int),
-):
-    """Fill a strip of one triangle, between its long edge and the two short ones."""
-    lane, triangle = wp.tid() % lanes, wp.tid() / lanes / strips
-    if triangle >= count[0]:
-        return
-    width = triangle_out.shape[1]
-    strip = strip_of(span[0], samples, wp.tid() / lanes % strips, strips)
-    begin, height = strip[0], strip[1]
-    corners = triangles[triangle]
-    above = wp.vec2i(0, (first_row + begin) * _UNIT)
-    top = to_fixed(wp.cw_mul(vertices[corners[0]], scale)) - above
-    middle = to_fixed(wp.cw_mul(vertices[corners[1]], scale)) - above
-    bottom = to_fixed(wp.cw_mul(vertices[corners[2]], scale)) - above
-    if wp.max(wp.max(top[1], middle[1]), bottom[1]) < 0:
-        return
-    if wp.min(wp.min(top[1], middle[1]), bottom[1]) > height * _UNIT:
-        return
+@wp.func
+def downwards(a: wp.vec2i, b: wp.vec2i, c: wp.vec2i):
+    """Three corners, the upmost first and the lowest last."""
+    top, middle, bottom = a, b, c
     if middle[1] < top[1]:
         swap = top
         top = middle
@@ -130,6 +105,40 @@ def fill_triangles(
         swap = middle
         middle = bottom
         bottom = swap
+    return top, middle, bottom
+
+
+@wp.func
+def fill_strip(
+    a: wp.vec2i,
+    b: wp.vec2i,
+    c: wp.vec2i,
+    begin: int,
+    height: int,
+    triangle: int,
+    overlaps: int,
+    lane: int,
+    lanes: int,
+    triangle_out: wp.array2d(dtype=int),
+):
+    """Fill a strip of one triangle, between its long edge and the two short ones.
+
+    Args:
+        a: A corner, from the strip's upper end [1/256 samples].
+        b: Another one.
+        c: The third.
+        begin: First row of the strip.
+        height: Its rows.
+        triangle: What is written.
+        overlaps: See `fill_run`.
+        lane: See there.
+        lanes: See there.
+        triangle_out: Triangle of each sample of a band.
+    """
+    if wp.max(wp.max(a[1], b[1]), c[1]) < 0 or wp.min(wp.min(a[1], b[1]), c[1]) > height * _UNIT:
+        return
+    top, middle, bottom = downwards(a, b, c)
+    width = triangle_out.shape[1]
     long = walk_edge(top, bottom, height)
     short = walk_edge(top, middle, height)
     row = long.row_begin
@@ -149,12 +158,49 @@ def fill_triangles(
         row += 1
 
 
+@wp.kernel(enable_backward=False)
+def fill_triangles(
+    span: wp.array(dtype=wp.vec2i),
+    # In:
+    vertices: wp.array(dtype=wp.vec2d),
+    triangles: wp.array(dtype=wp.vec3i),
+    listed: wp.array(dtype=int),
+    begins: wp.array(dtype=int),
+    band: int,
+    scale: wp.vec2d,
+    first_row: int,
+    samples: int,
+    overlaps: int,
+    lanes: int,
+    strips: int,
+    stride: int,
+    # Out:
+    triangle_out: wp.array2d(dtype=int),
+):
+    """Fill a strip of one triangle of a band, and of every `stride`th after it."""
+    strip = strip_of(span[0], samples, wp.tid() / lanes % strips, strips)
+    above = wp.vec2i(0, (first_row + strip[0]) * _UNIT)
+    lane = wp.tid() % lanes
+    n = begins[band] + wp.tid() / lanes / strips
+    while n < begins[band + 1]:
+        triangle = listed[n]
+        corners = triangles[triangle]
+        fill_strip(
+            to_fixed(wp.cw_mul(vertices[corners[0]], scale)) - above,
+            to_fixed(wp.cw_mul(vertices[corners[1]], scale)) - above,
+            to_fixed(wp.cw_mul(vertices[corners[2]], scale)) - above,
+            strip[0], strip[1], triangle, overlaps, lane, lanes, triangle_out,
+        )  # fmt: skip
+        n += stride
+
+
 def record_gbuffer(
     device: Device,
     *,
     vertices: wp.array,
     triangles: wp.array,
-    count: wp.array,
+    lists: BandLists,
+    band: int,
     scale: tuple[float, float],
     first_row: int,
     samples: int,
@@ -163,14 +209,15 @@ def record_gbuffer(
 ) -> Phase:
     """Prepare the launch that writes every sample's triangle; its elements are rows of pixels.
 
-    Every part of it looks at all triangles and fills rows of its own, so that whoever shades a
-    row finds it in the cache, and nobody waits for another.
+    Every part of it looks at all triangles of the band and fills rows of its own, so that whoever
+    shades a row finds it in the cache, and nobody waits for another.
 
     Args:
         device: Where to run.
         vertices: Positions [px of the picture], [V] vec2d.
         triangles: Corners, [T] vec3i.
-        count: Number of triangles, [1] int32.
+        lists: Which triangles lie in which band.
+        band: Number of the band.
         scale: Samples per pixel of the picture, across and down.
         first_row: The sample row of the output with which `triangle_out` begins.
         samples: Sample rows per row of pixels.
@@ -179,9 +226,9 @@ def record_gbuffer(
         overlaps: Whether triangles may lie over each other: what comes later is seen then, and the
             band was emptied before.
     """
-    spread = (CARD_LANES, CARD_STRIPS) if device.is_cuda else (1, 1)
-    inputs = [vertices, triangles, count, wp.vec2d(*scale), first_row, samples, int(overlaps)]
-    inputs += spread
+    spread = (CARD_LANES, CARD_STRIPS, ONCE) if device.is_cuda else (1, 1, 1)
+    inputs = [vertices, triangles, lists.listed, lists.begins, band]
+    inputs += [wp.vec2d(*scale), first_row, samples, int(overlaps), *spread]
     return device.record(
         fill_triangles, inputs, [triangle_out], smallest_part=LEAST_ROWS, flows_on=True
     )

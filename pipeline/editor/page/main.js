@@ -77,8 +77,8 @@ function tellHint(stage) {
 function tellFacts(stage) {
   const { mesh, pointer } = stage;
   if (!mesh) return;
-  const where = pointer ? `${pointer.x.toFixed(1)}, ${pointer.y.toFixed(1)} px   ` : "";
-  write("facts", `${where}${mesh.triangleCount} triangles   rmse ${mesh.rmse.toFixed(2)}`);
+  const where = pointer ? `${pointer.x.toFixed(1)}, ${pointer.y.toFixed(1)} px · ` : "";
+  write("facts", `${where}${mesh.triangleCount} triangles · rmse ${mesh.rmse.toFixed(2)}`);
 }
 
 /** Start. */

@@ -1,5 +1,6 @@
-import { Mesh } from "./mesh/mesh.js";
+import { carriedOn, Mesh } from "./mesh/mesh.js";
 import { pick } from "./mesh/pick.js";
+import { Ghosts } from "./tools/ghosts.js";
 import { Marks } from "./tools/marks.js";
 import { editOf, planned } from "./tools/plans.js";
 import { Player } from "./time/player.js";
@@ -15,10 +16,6 @@ import { Painter } from "./view/painter.js";
  * @typedef {"edited" | "solved" | "before" | "live"} View
  */
 
-/** How long the pointer rests before the brush shows what it would do [ms]. */
-const REST = 40;
-/** How often that is renewed while the optimiser works [ms]. */
-const AGAIN = 200;
 /** Radii of the brush [px of the picture]. */
 const RADII = [3, 400];
 
@@ -45,6 +42,7 @@ export class Stage {
     this.mode = "all";
     this.opacities = { picture: 1, drawn: 1, errors: 0, mesh: 0.6 };
     this.hiddenMesh = 0.6;
+    this.isVeiled = false;
     /** @type {Brush} */
     this.brush = { radius: 40, count: 10, spread: "uniform" };
     /** @type {State} */
@@ -61,6 +59,7 @@ export class Stage {
     this.view = "edited";
     this.player = new Player(this);
     this.marks = new Marks(this);
+    this.ghosts = new Ghosts(this);
     this.isLooking = false;
     this.isLookWanted = false;
     /** @type {Mesh | null} */
@@ -73,11 +72,6 @@ export class Stage {
     this.moving = null;
     /** @type {Point[]} */
     this.polygon = [];
-    /** @type {{fresh: Point[], gone: Point[], removes: boolean} | null} */
-    this.ghost = null;
-    this.ghostTimer = 0;
-    this.ghostAt = 0;
-    this.isGhostAsked = false;
     this.edits = Promise.resolve();
     /** @type {(() => void)[]} */
     this.watchers = [];
@@ -131,6 +125,16 @@ export class Stage {
     this.changed();
   }
 
+  /**
+   * Hide the mesh until a hand is over the picture again: one looks at what a style does.
+   * @param {boolean} isVeiled
+   */
+  veil(isVeiled) {
+    if (this.isVeiled === isVeiled) return;
+    this.isVeiled = isVeiled;
+    this.repaint();
+  }
+
   toggleMesh() {
     if (this.opacities.mesh) this.hiddenMesh = this.opacities.mesh;
     this.setOpacity("mesh", this.opacities.mesh ? 0 : this.hiddenMesh);
@@ -162,7 +166,7 @@ export class Stage {
       this.mesh = new Mesh(packed);
       this.painter.setMesh(this.mesh);
       if (before && this.moving) this.moving = carriedOn(this.moving, before, this.mesh);
-      if (packed.head.view === "live") this.hoverOn();
+      if (packed.head.view === "live") this.ghosts.renewNowAndThen();
       else this.hover();
     } else if (packed.head.kind === "picture" || packed.head.kind === "drawn") {
       this.painter.setPicture(packed.head.kind, packed);
@@ -247,7 +251,8 @@ export class Stage {
     this.isDirty = true;
     requestAnimationFrame(() => {
       this.isDirty = false;
-      this.painter.paint(this.camera, this.size, this.opacities);
+      const mesh = this.isVeiled ? 0 : this.opacities.mesh;
+      this.painter.paint(this.camera, this.size, { ...this.opacities, mesh });
       this.overlay.paint(this.camera, this.mesh, this.shown());
       this.painted();
     });
@@ -290,38 +295,15 @@ export class Stage {
     };
   }
 
+  /** What a touch of the brush would do here, as far as that is known. */
+  get ghost() {
+    return this.ghosts.now;
+  }
+
   /** The pointer has moved, or what lies under it has changed. */
   hover() {
-    this.ghost = null;
-    clearTimeout(this.ghostTimer);
-    if (this.tool === "brush" && this.pointer) this.ghostTimer = setTimeout(() => this.askGhost(), REST);
+    this.ghosts.renew();
     this.repaint();
-  }
-
-  /** The mesh moves by itself: what a touch of the brush would do is asked for now and then. */
-  hoverOn() {
-    const now = performance.now();
-    if (this.tool !== "brush" || !this.pointer || now - this.ghostAt < AGAIN) return;
-    this.ghostAt = now;
-    this.askGhost();
-  }
-
-  async askGhost() {
-    if (this.isGhostAsked || !this.pointer || !this.connection.isOpen) return;
-    const at = this.pointer;
-    const removes = this.shift;
-    this.isGhostAsked = true;
-    try {
-      const { fresh, gone } = await this.connection.ask("ghost", { edits: [this.stroke(at, removes)] });
-      const points = (/** @type {number[][]} */ rows) => rows.map(([x, y]) => ({ x, y }));
-      if (this.pointer === at) this.ghost = { fresh: points(fresh), gone: points(gone), removes };
-      this.repaint();
-    } catch {
-      this.ghost = null; // where nothing can be put nothing is shown
-    } finally {
-      this.isGhostAsked = false;
-      if (this.pointer !== at || this.shift !== removes) this.hover(); // it has moved on meanwhile
-    }
   }
 
   /**
@@ -428,17 +410,4 @@ export class Stage {
     this.polygon = [];
     this.repaint();
   }
-}
-
-/**
- * A vertex that is carried while another mesh comes, which may have lost it.
- * @param {{vertex: number, from: Point, to: Point}} moving
- * @param {Mesh} before
- * @param {Mesh} mesh
- */
-function carriedOn({ vertex, from, to }, before, mesh) {
-  const now = mesh.ids.indexOf(before.ids[vertex]);
-  if (now < 0) return null;
-  const isMoved = to.x !== from.x || to.y !== from.y;
-  return { vertex: now, from: mesh.at(now), to: isMoved ? to : mesh.at(now) };
 }

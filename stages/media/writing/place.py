@@ -5,6 +5,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from stages.media.writing.commit import (
+    PendingFile,
     output_error,
     refuse_special,
     remove_left_overs,
@@ -66,9 +67,8 @@ def check_folder(path: Path) -> None:
     Raises:
         OutputError: If the folder takes none.
     """
-    folder = true_place(path).parent
-    remove_left_overs(folder)
-    probe = folder / f".trimotion-{os.getpid()}.test"
+    remove_left_overs(true_place(path).parent)
+    probe = PendingFile(path).path  # a name of this call's own: other threads try the folder, too
     try:
         probe.touch()
         probe.unlink()

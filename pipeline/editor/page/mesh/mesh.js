@@ -117,3 +117,16 @@ export class Mesh {
     return this.neighbours[vertex].reduce((best, other) => (away(other) < away(best) ? other : best));
   }
 }
+
+/**
+ * A vertex that is carried while another mesh comes, which may have lost it.
+ * @param {{vertex: number, from: Point, to: Point}} moving
+ * @param {Mesh} before
+ * @param {Mesh} mesh
+ */
+export function carriedOn({ vertex, from, to }, before, mesh) {
+  const now = mesh.ids.indexOf(before.ids[vertex]);
+  if (now < 0) return null;
+  const isMoved = to.x !== from.x || to.y !== from.y;
+  return { vertex: now, from: mesh.at(now), to: isMoved ? to : mesh.at(now) };
+}

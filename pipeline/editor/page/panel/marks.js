@@ -58,5 +58,12 @@ export function marksSection(stage, style, texture) {
     names.row.hidden = !wanted.includes("style");
     focus.row.hidden = !wanted.includes("focus");
   });
-  return section("Brush and region", radius.row, count.row, spread.row, help("Green dots show where vertices would come to be, before you click."), paints.row, gives.row, names.row, focus.row);
+  const made = section("Brush and region", radius.row, count.row, spread.row, help("Green dots show where vertices would come to be, before you click."), paints.row, gives.row, names.row, focus.row);
+  let tool = stage.tool;
+  stage.watch(() => {
+    if (tool === stage.tool) return;
+    tool = stage.tool;
+    if (["brush", "region", "paint"].includes(tool)) made.scrollIntoView({ block: "nearest" });
+  });
+  return made;
 }

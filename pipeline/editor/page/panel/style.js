@@ -72,6 +72,7 @@ export class StylePanel {
 
   /** Have the newest stack drawn; of those between the last counts. */
   async send() {
+    this.stage.veil(true);
     this.isWanted = true;
     if (this.isSending) return;
     this.isSending = true;

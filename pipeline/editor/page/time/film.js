@@ -20,6 +20,7 @@ export class FilmPanel {
   /** @param {Stage} stage */
   constructor(stage) {
     this.stage = stage;
+    this.output = ""; // what is being rendered
     this.apply = button("apply", "", "Solve what was edited again: the film follows (Ctrl+Enter)", () => this.begin());
     this.apply.className = "main";
     this.render = button("render", "Render film", "Draw the film in this style, to a file beside the track", () => this.draw());
@@ -33,10 +34,12 @@ export class FilmPanel {
     this.work.append(this.title, this.bar, this.cancel);
     this.note = help("");
     this.note.id = "film-note";
+    this.written = help("");
+    this.written.id = "written";
     const buttons = document.createElement("div");
     buttons.className = "buttons";
     buttons.append(this.apply, this.render, this.export);
-    this.element = section("Film", this.note, buttons, this.work);
+    this.element = section("Film", this.note, buttons, this.work, this.written);
     stage.watch(() => this.renew());
   }
 
@@ -69,14 +72,17 @@ export class FilmPanel {
   async draw() {
     const { stage } = this;
     const ending = this.isStill ? "png" : "mp4";
-    await this.try(() => stage.connection.ask("render", { name: `${stage.stem}.${stamp()}.${ending}` }));
+    await this.try(async () => {
+      const { path } = await stage.connection.ask("render", { name: `${stage.stem}.${stamp()}.${ending}` });
+      this.output = path;
+    });
   }
 
   async write() {
     const { stage } = this;
     await this.try(async () => {
       const { path } = await stage.connection.ask("export", { name: `${stage.stem}.frame${stage.frame}.${stamp()}.png` });
-      stage.told.say(`Written: ${path}`);
+      this.tellWritten(path);
     });
   }
 
@@ -89,6 +95,11 @@ export class FilmPanel {
     }
   }
 
+  /** @param {string} path of a file, which stays to be seen: one looks for it afterwards */
+  tellWritten(path) {
+    this.written.textContent = `Written: ${path}`;
+  }
+
   /** @param {any} words of long work */
   tell(words) {
     const isOver = words.tell !== "work";
@@ -98,7 +109,10 @@ export class FilmPanel {
       if (words.total) Object.assign(this.bar, { max: words.total, value: words.done });
       else this.bar.removeAttribute("value");
     }
-    if (words.tell === "done") this.stage.told.say([`${words.title}: done.`, ...words.notes].join(" "));
+    if (words.tell === "done") {
+      this.stage.told.say([`${words.title}: done.`, ...words.notes].join(" "));
+      if (this.output && words.title.startsWith("Rendering")) this.tellWritten(this.output);
+    }
     if (words.tell === "failed") this.stage.told.problem(words.text);
     this.renew();
   }

@@ -91,6 +91,7 @@ export class Pointer {
       return;
     }
     const before = stage.pointer;
+    stage.veil(false);
     stage.isByKeys = false;
     stage.shift = event.shiftKey;
     stage.pointer = stage.camera.toPicture(at);

@@ -86,6 +86,48 @@ class Places:
         return start
 
 
+@dataclass(frozen=True)
+class Doubled:
+    """Something that a file says twice."""
+
+    name: str
+    """The key, or the table in brackets."""
+    first: Place
+    """Where it stands first."""
+    place: Place
+    """Where it stands again."""
+
+
+def doubled_in(text: str, file: str, last: int) -> Doubled | None:
+    """The last key or table that a file gives twice, up to a line.
+
+    Args:
+        text: The file.
+        file: Its name.
+        last: The line, from 1.
+    """
+    seen: dict[tuple[Table, str | None], Place] = {}
+    found = None
+    counts: dict[str, int] = {}
+    table: Table = ()
+    for number, line in enumerate(text.split("\n")[:last], start=1):
+        header, entry = _HEADER.match(line), _ENTRY.match(line)
+        key, column = None, None
+        if header is not None:
+            table = _table_of(header[1], header[2], counts)
+            name = f"[{header[2]}]"
+        elif entry is not None:
+            name = key = _plain_key(entry[1])
+            column = entry.start(1) + 1
+        else:
+            continue
+        place = Place(file, number, column)
+        if (table, key) in seen:
+            found = Doubled(name, seen[table, key], place)
+        seen.setdefault((table, key), place)
+    return found
+
+
 def places_of(text: str, file: str) -> Places:
     """Find out where the entries of a TOML file stand, which its parser does not tell.
 
