@@ -112,6 +112,11 @@ class Module:
         """The parsed source."""
         return ast.parse(self.source)
 
+    @cached_property
+    def nodes(self) -> tuple[ast.AST, ...]:
+        """All of the tree: a dozen rules look at them, and to walk takes longer than to look."""
+        return tuple(ast.walk(self.tree))
+
     @property
     def package(self) -> str:
         """The top folder."""
@@ -119,14 +124,14 @@ class Module:
 
     def functions(self) -> Iterator[FunctionNode]:
         """Walk all functions, methods and nested functions."""
-        for node in ast.walk(self.tree):
+        for node in self.nodes:
             if isinstance(node, FunctionNode):
                 yield node
 
     def imports(self) -> Iterator[tuple[int, str]]:
         """Walk the absolute dotted names of all imports, with their lines."""
         folder = PurePosixPath(self.path).parent.parts
-        for node in ast.walk(self.tree):
+        for node in self.nodes:
             if isinstance(node, ast.Import):
                 yield from ((node.lineno, alias.name) for alias in node.names)
             elif isinstance(node, ast.ImportFrom):
@@ -183,7 +188,7 @@ def kernels_only_in_warp_kernels(module: Module) -> Iterator[Finding]:
     for function in module.functions():
         if _is_kernel(function):
             yield function.lineno, f"kernel {function.name}"
-    for node in ast.walk(module.tree):
+    for node in module.nodes:
         if isinstance(node, ast.Call) and _warp_name(node.func) in {"launch", "launch_tiled"}:
             yield node.lineno, "launch of a kernel"
 
@@ -221,7 +226,7 @@ def memory_is_allocated_in_one_place(module: Module) -> Iterator[Finding]:
         if _is_kernel(function) or _has_decorator(function, "func")
         for node in ast.walk(function)
     }
-    for node in ast.walk(module.tree):
+    for node in module.nodes:
         if isinstance(node, ast.Call) and _warp_name(node.func) in ALLOCATORS:
             is_type = not node.args and {k.arg for k in node.keywords} <= TYPE_KEYWORDS
             if not is_type and id(node) not in on_device:
@@ -237,13 +242,13 @@ def warp_is_called_under_its_lock(module: Module) -> Iterator[Finding]:
         is_kernel = _is_kernel(function) or _has_decorator(function, "func")
         if is_kernel or (module.path in WARP_HOMES and function.name in UNLOCKED):
             exempt |= {id(node) for node in ast.walk(function)}
-    for node in ast.walk(module.tree) if module.path in WARP_HOMES else ():
+    for node in module.nodes if module.path in WARP_HOMES else ():
         if isinstance(node, ast.With):
             for position, item in enumerate(node.items):
                 if ast.unparse(item.context_expr) == "WARP":
                     for held in (*node.items[position + 1 :], *node.body):
                         exempt |= {id(inner) for inner in ast.walk(held)}
-    for node in ast.walk(module.tree):
+    for node in module.nodes:
         if isinstance(node, ast.Call) and id(node) not in exempt and _calls_warp(node):
             yield node.lineno, f"{ast.unparse(node.func)} without the lock WARP of the device"
 
@@ -266,7 +271,7 @@ def modules_have_docstrings(module: Module) -> Iterator[Finding]:
 
 def public_names_have_docstrings(module: Module) -> Iterator[Finding]:
     """Public functions, methods and classes say what they do."""
-    for node in ast.walk(module.tree):
+    for node in module.nodes:
         named = isinstance(node, FunctionNode | ast.ClassDef)
         if named and not node.name.startswith("_") and not ast.get_docstring(node):
             yield node.lineno, f"{node.name} has no docstring"
@@ -305,7 +310,7 @@ def files_are_named_after_one_thing(module: Module) -> Iterator[Finding]:
 
 def no_bare_except(module: Module) -> Iterator[Finding]:
     """A handler names what it handles."""
-    for node in ast.walk(module.tree):
+    for node in module.nodes:
         if isinstance(node, ast.ExceptHandler) and node.type is None:
             yield node.lineno, "bare except"
 

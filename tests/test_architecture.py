@@ -272,7 +272,7 @@ def class_names(modules: list[Module]) -> dict[str, list[str]]:
     """The modules that define a class, by its name."""
     found: dict[str, list[str]] = {}
     for module in modules:
-        for node in ast.walk(module.tree):
+        for node in module.nodes:
             if isinstance(node, ast.ClassDef):
                 found.setdefault(node.name, []).append(module.path)
     return found

@@ -21,7 +21,7 @@ def given(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_a_full_disk_costs_nothing_that_was_solved(given: Path) -> None:
     """One line and exit code 4; with more room it goes on to the same bits."""
-    with disk_of(given / "disk", 64 * 1024) as may:
+    with disk_of(given / "disk", 48 * 1024) as may:
         if not may:
             pytest.skip("this user may not make a disk in memory")
         track, again = given / "disk" / "a.mtrk", given / "b.mtrk"

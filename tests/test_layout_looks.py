@@ -12,6 +12,7 @@ from stages.layouts import LAYOUTS
 from stages.layouts.hexagons import Hexagons
 from stages.layouts.point_file import read_points
 from stages.layouts.points import Points
+from stages.solve.grid import PLACES
 from stages.topology.refine_options import RefineOptions
 from stages.triangulate import Triangulator
 from stages.triangulate_options import TriangulateOptions
@@ -116,7 +117,7 @@ def test_a_layout_is_held(device: str) -> None:
         if keep == 1.0 or iterations == 0:
             assert np.array_equal(mesh.triangles, layout.triangles)
     assert moved[0] > 2 * moved[1] > 0
-    assert moved[2] == moved[3] == 0
+    assert moved[2] == moved[3] < 1 / PLACES  # no further than a solution is rounded
     with pytest.raises(OptionError, match="--keep-layout 2: must lie between"):
         TriangulateOptions(keep_layout=2.0)
 
