@@ -13,13 +13,17 @@ import resource
 import sys
 import tempfile
 import time
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
+from pipeline.farm.cluster.address import SPARING
 from pipeline.farm.cluster.runner import OnCluster
 from pipeline.loop.animate import solve
 from pipeline.loop.ranges import InThisProcess, RangeRunner
+from pipeline.loop.result import Animated
 from pipeline.options.output import Output
 from pipeline.options.run import Run
 from pipeline.options.solve_options import SolveOptions
@@ -36,6 +40,20 @@ class InTurn(InThisProcess):
     """One process that solves shot after shot, each to a track of its own, as workers do."""
 
     places = 2
+
+
+class Watched(OnCluster):
+    """Knows what client and scheduler took of this process, without cuts and joining."""
+
+    used = 0.0
+
+    def run(self, *given: Any) -> Sequence[Animated]:
+        """Solve ranges beside each other."""
+        begun = cpu()
+        try:
+            return super().run(*given)
+        finally:
+            self.used = cpu() - begun
 
 
 def film(folder: Path, frames: int) -> SolveOptions:
@@ -98,8 +116,10 @@ def main() -> int:
     parser.add_argument("--frames", type=int, default=10, help="of a shot")
     parser.add_argument("--workers", type=int, nargs="+", default=[1, 2, 3])
     given = parser.parse_args()
+    import dask
     from distributed import Client, LocalCluster
 
+    dask.config.set(SPARING)
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         options = film(folder, given.frames)
@@ -110,7 +130,11 @@ def main() -> int:
         for count in given.workers:
             with (
                 LocalCluster(
-                    n_workers=count, threads_per_worker=1, processes=True, dashboard_address=None
+                    n_workers=count,
+                    threads_per_worker=1,
+                    processes=True,
+                    memory_limit=0,
+                    dashboard_address=None,
                 ) as cluster,
                 Client(cluster, set_as_default=False) as client,
             ):
@@ -118,7 +142,9 @@ def main() -> int:
                 run(options, folder / f"first{count}.mtrk", OnCluster(address))  # they import
                 before = client.run(used_by)
                 track = folder / f"{count}.mtrk"
-                wall, here = run(options, track, OnCluster(address))
+                runner = Watched(address)
+                wall, _ = run(options, track, runner)
+                here = runner.used
                 after = client.run(used_by)
             spent = [after[worker] - before[worker] for worker in before]
             assert rows(track) == expected

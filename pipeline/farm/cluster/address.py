@@ -14,6 +14,14 @@ from warp_kernels.errors import OptionError, TrimotionError
 
 PATIENCE = 60.0
 """How long to wait for the scheduler [s]."""
+SPARING = {
+    "distributed.admin.tick.interval": "1s",
+    "distributed.admin.tick.limit": "30s",
+    "distributed.worker.profile.enabled": False,
+    "distributed.admin.system-monitor.interval": "5s",
+    "distributed.admin.system-monitor.disk": False,
+}
+"""What Dask would do beside the work, some hundred times a second, for a page that nobody opens."""
 _LOCAL = re.compile(r"local:(\d+)")
 
 
@@ -68,11 +76,15 @@ def _imported(address: str) -> Any:
 
 def _local(distributed: Any, count: int) -> Any:
     """Workers on this machine, which share its cores."""
+    import dask
+
     settle_cache()  # once for all of them
-    return distributed.LocalCluster(
-        n_workers=count,
-        threads_per_worker=max(1, (os.cpu_count() or 1) // count),
-        processes=True,
-        dashboard_address=None,
-        silence_logs=logging.CRITICAL,
-    )
+    with dask.config.set(SPARING):
+        return distributed.LocalCluster(
+            n_workers=count,
+            threads_per_worker=max(1, (os.cpu_count() or 1) // count),
+            processes=True,
+            memory_limit=0,  # it would end a worker at a share of what is there; nothing is kept
+            dashboard_address=None,
+            silence_logs=logging.CRITICAL,
+        )

@@ -26,8 +26,10 @@ from stages.media import input_pattern
 from stages.media.writing.commit import PendingFile
 from warp_kernels.errors import OptionError, TrimotionError
 
-LOOK = 0.5
-"""How often it is asked who is there [s]."""
+WAIT = 0.5
+"""How long to wait for news at a time [s]."""
+LOOK = 2.0
+"""How often it is asked who is there [s]; whose shot is lost is told without asking."""
 ATTEMPTS = 3
 """How often a shot is tried whose workers are lost or fail for reasons of their own."""
 LONGEST_WAIT = 60.0
@@ -112,12 +114,12 @@ class Crew:
         while len(self._found) < len(self._parts):
             self._hand_out()
             try:
-                event = self._events.get(timeout=LOOK)
+                event = self._events.get(timeout=WAIT)
             except Empty:
                 event = None
             if isinstance(event, tuple):  # (time, what a worker reports)
-                _, triangles, rmse = event[1]
-                progress.frame(0, None, triangles, rmse)
+                for triangles, rmse in event[1]:
+                    progress.frame(0, None, triangles, rmse)
             elif event is not None:
                 self._take_in(event)
             if monotonic() - self._looked > LOOK:
@@ -140,7 +142,6 @@ class Crew:
                 self._errand,
                 replace(self._work, run=run),
                 self._parts[number],
-                number,
                 greeting.shares,
                 key=f"trimotion-{self._errand.token}-{number}-{self._tries[number]}",
                 workers=[address],

@@ -5,6 +5,7 @@ import shutil
 import tempfile
 from dataclasses import dataclass, replace
 from pathlib import Path
+from time import monotonic
 from typing import Any
 
 from pipeline.loop.ranges import Part, Work
@@ -18,6 +19,8 @@ from stages.media.writing.alone import alone
 from warp_kernels.device.memory import is_out_of_memory
 from warp_kernels.errors import TrimotionError
 
+OFTEN = 0.5
+"""How often frames are told of [s]: each message is work for worker, scheduler and client."""
 ORPHANS = 60.0
 """How long to wait for what an earlier run left on the machine [s]."""
 
@@ -99,25 +102,27 @@ def forget(errand: Errand) -> None:
     shutil.rmtree(_received(errand).parent, ignore_errors=True)
 
 
-def solve_there(errand: Errand, work: Work, part: Part, number: int, shares: bool) -> Fate:
+def solve_there(errand: Errand, work: Work, part: Part, shares: bool) -> Fate:
     """Solve a shot on this worker.
 
     Args:
         errand: The run.
         work: How it is solved; the names of its files are absolute.
         part: The shot and its track.
-        number: Its number, for reports.
         shares: Whether the storage is shared.
 
     Returns:
         What became of it; what fails is told, not raised, for not every error can be sent.
     """
     try:
-        report = _Report(errand.token, number)
+        report = _Report(errand.token)
         if shares:
             with alone(part.output.track, patience=ORPHANS):
-                return Fate(_solved(errand, work, part, report))
-        return _solved_apart(errand, work, part, report)
+                fate = Fate(_solved(errand, work, part, report))
+        else:
+            fate = _solved_apart(errand, work, part, report)
+        report.send()
+        return fate
     except TrimotionError as error:
         return Fate(error=str(error), exit_code=error.exit_code)
     except UnwantedError:
@@ -164,18 +169,28 @@ def _received(errand: Errand) -> Path:
 
 
 class _Report(Progress):
-    """Tells of every frame, and ends the work when nobody wants it any more."""
+    """Tells of frames, and ends the work when nobody wants it any more."""
 
-    def __init__(self, topic: str, number: int) -> None:
+    def __init__(self, topic: str) -> None:
         super().__init__()
         from distributed import get_worker
 
-        self._topic, self._number, self._worker = topic, number, get_worker()
+        self._topic, self._worker = topic, get_worker()
         self._task = self._worker.get_current_task()
+        self._untold: list[tuple[int, float]] = []
+        self._told = monotonic()
 
     def frame(self, done: int, total: int | None, triangles: int, rmse: float) -> None:
-        """Tell that a frame is finished."""
+        """Take in that a frame is finished, and tell it from time to time."""
         task = self._worker.state.tasks.get(self._task)
         if task is None or task.state != "executing":
             raise UnwantedError
-        self._worker.log_event(self._topic, (self._number, triangles, rmse))
+        self._untold.append((triangles, rmse))
+        if monotonic() - self._told > OFTEN:
+            self.send()
+
+    def send(self) -> None:
+        """Tell of the frames that were not told yet."""
+        if self._untold:
+            self._worker.log_event(self._topic, tuple(self._untold))
+        self._untold, self._told = [], monotonic()
