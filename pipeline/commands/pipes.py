@@ -17,7 +17,7 @@ from warp_kernels.errors import MediaError, OptionError, TrimotionError
 
 FORMATS = {"solve": ".mtrk", "join": ".mtrk", "preview": ".png", "listen": ".json"}
 """Ending of an output whose name does not say, by the command; PNG or Matroska for the others."""
-_MADE = "standard output"
+_MADE, _RECEIVED = "standard output", "standard input"
 
 
 @contextmanager
@@ -45,7 +45,7 @@ def piped(arguments: argparse.Namespace) -> Iterator[None]:
     if writes and given.get("progress") == "json":
         raise OptionError("-o -: standard output is taken by --progress json; choose another")
     with tempfile.TemporaryDirectory(prefix="trimotion-") as folder:
-        received = Path(folder) / "standard input"
+        received = Path(folder) / _RECEIVED
         for key in inputs:
             setattr(arguments, key, str(_received(received)))
         if not writes:
@@ -75,12 +75,12 @@ def _told_as(names: Mapping[Path, str]) -> Iterator[None]:
 
 
 def shown_name(path: Path) -> Path:
-    """What a user calls an output.
+    """What a user calls a source or an output.
 
     Args:
-        path: The file that is written.
+        path: The file that is read or written.
     """
-    return Path(PIPE) if path.stem == _MADE else path
+    return Path(PIPE) if path.stem in (_MADE, _RECEIVED) else path
 
 
 def _ending_for(arguments: argparse.Namespace) -> str:
