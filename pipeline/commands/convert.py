@@ -223,6 +223,7 @@ def _report(
     output = job.output.path or job.output.track
     assert source is not None
     assert output is not None
-    names = (str(shown_name(source)), str(shown_name(output)))
+    called = getattr(arguments, "address", None) or str(shown_name(source))
+    names = (called, str(shown_name(output)))
     given = given_by(arguments)
     write_report(Telling(arguments.command, given, *names, result, notes, warnings), job, track)
