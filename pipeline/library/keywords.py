@@ -28,6 +28,7 @@ class SourceKeywords(RangeKeywords, total=False):
     fps: str | float | Fraction | None
     page: int | None
     stream: int | None
+    limits: str | None
 
 
 class DeviceKeywords(TypedDict, total=False):

@@ -104,7 +104,8 @@ RANGE_OPTIONS = tuple(
 """Options that together make a `FrameRange`."""
 
 _SOLVING = {
-    *("triangles", "motion", "processes", "track", "resume", "fps", "page", "stream", "seed"),
+    *("triangles", "motion", "processes", "track", "resume", "fps", "page", "stream", "limits"),
+    "seed",
     "loop",
 }
 """Groups and options that mean nothing once there is a track."""

@@ -7,9 +7,9 @@ from pipeline.options.command_line import Option, job_options
 from pipeline.options.edit_log import EditLog
 from pipeline.track.plain_values import CLASS
 
-FREE = frozenset({"source", "frame_range"})
-"""Fields that may differ: the source is compared by its content, the range by what it joins."""
-
+FREE = frozenset({"source", "frame_range", "limits"})
+"""Fields that may differ: the source is compared by its content, the range by what it joins, and
+limits change nothing of what they let through."""
 
 NAMES = {
     "of_triangles": "triangles of the --timeline",
@@ -27,8 +27,7 @@ def differing_flags(mine: Mapping[str, Any], theirs: Mapping[str, Any]) -> list[
         theirs: Another's.
     """
     options = {option.dest: option for option in job_options()}
-    kept = [{k: v for k, v in job.items() if k not in FREE} for job in (mine, theirs)]
-    return list(_differing(kept[0], kept[1], options))
+    return list(_differing(mine, theirs, options))
 
 
 def _differing(
@@ -36,7 +35,7 @@ def _differing(
 ) -> Iterator[str]:
     for name in {**mine, **theirs}:
         one, other = mine.get(name), theirs.get(name)
-        if one == other:
+        if one == other or name in FREE:
             continue
         option = options.get(name)
         if option is None and isinstance(one, Mapping) and isinstance(other, Mapping):

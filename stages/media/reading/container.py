@@ -11,7 +11,7 @@ from av.container import InputContainer
 from av.stream import Disposition
 from av.video.stream import VideoStream
 
-from stages.media.reading.info import DEFAULT_MAX_PIXELS
+from stages.media.reading.limits import Limits
 from stages.media.reading.pyav import LENIENT
 from warp_kernels.errors import MediaError, OptionError
 
@@ -42,9 +42,10 @@ class ChosenVideo:
 
 def open_container(
     path: Path,
-    max_pixels: int = DEFAULT_MAX_PIXELS,
+    max_pixels: int = Limits.pixels,
     rate: Fraction | None = None,
     content: bytes | None = None,
+    max_streams: int = Limits.streams,
 ) -> InputContainer:
     """Open a local file for reading.
 
@@ -53,6 +54,7 @@ def open_container(
         max_pixels: Largest picture that a decoder may allocate [px].
         rate: Frames per second of what has no times; None for FFmpeg's 25.
         content: What is read in place of the file's own content, or None.
+        max_streams: The most that it may have.
 
     Raises:
         MediaError: If there is no such regular file, or its content is no known media format.
@@ -63,6 +65,7 @@ def open_container(
         "format_whitelist": ",".join(sorted(av.formats_available - _REFUSED_FORMATS)),
         "pattern_type": "none",
         "max_pixels": str(max_pixels),
+        "max_streams": str(max_streams + 1),  # one more tells that there are too many
         **({} if rate is None else {"framerate": str(rate)}),
     }
     try:

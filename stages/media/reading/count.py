@@ -4,7 +4,6 @@ from pathlib import Path
 
 from stages.media.naming import input_pattern
 from stages.media.reading.container import DAMAGE
-from stages.media.reading.info import DEFAULT_MAX_PIXELS
 from stages.media.reading.read_options import AS_IT_COMES, ReadOptions
 from stages.media.reading.sequence import existing_numbers
 from stages.media.reading.source import VideoSource
@@ -23,7 +22,7 @@ def count_frames(path: str | Path, read: ReadOptions = AS_IT_COMES) -> int:
     pattern = input_pattern(path)
     if pattern is not None:
         return existing_numbers(pattern)[-1] + 1
-    with VideoSource(Path(path), DEFAULT_MAX_PIXELS, read=read) as source:
+    with VideoSource(Path(path), read=read) as source:
         count = 0
         try:
             for packet in source.container.demux(source.stream):

@@ -2,6 +2,7 @@
 
 from collections import deque
 from collections.abc import Iterator
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
@@ -11,6 +12,7 @@ from av.video.frame import VideoFrame
 from stages.frame import Frame
 from stages.media.color.hdr import tone_map
 from stages.media.color.yuv import WHITE, RgbReader, read_color
+from stages.media.expected_frames import expected_frames
 from stages.media.frame_range import FrameRange
 from stages.media.naming import NumberedPattern, input_pattern
 from stages.media.orientation import upright
@@ -18,7 +20,7 @@ from stages.media.reading.container import DAMAGE, reason_of
 from stages.media.reading.count import count_frames
 from stages.media.reading.deinterlace import deinterlace
 from stages.media.reading.frame_index import seek_to_frame
-from stages.media.reading.info import DEFAULT_MAX_PIXELS, MediaInfo
+from stages.media.reading.info import MediaInfo
 from stages.media.reading.probe import describe, describe_sequence
 from stages.media.reading.read_options import AS_IT_COMES, ReadOptions
 from stages.media.reading.sequence import existing_numbers, refuse_gaps, still_frames
@@ -35,7 +37,7 @@ def open_decoder(
     frame_range: FrameRange = WHOLE,
     *,
     margin: tuple[int, int] = (0, 0),
-    max_pixels: int = DEFAULT_MAX_PIXELS,
+    max_pixels: int | None = None,
     threads: int = 0,
     paper: int = WHITE,
     read: ReadOptions = AS_IT_COMES,
@@ -47,7 +49,7 @@ def open_decoder(
         frame_range: The frames wanted. Stills of a sequence go by the number in their name.
         margin: Frames given beyond the range before and after it, in its steps, where the source
             has them.
-        max_pixels: Largest picture that is opened [px].
+        max_pixels: Largest picture that is opened [px]; None for what was chosen.
         threads: Decoder threads, 0 for one per core.
         paper: Grey that shows through transparent pixels [code value].
         read: What the user chose.
@@ -75,6 +77,7 @@ class Decoder:
         margin: tuple[int, int],
         source_name: str,
         paper: int,
+        read: ReadOptions,
     ) -> None:
         """Prepare the parts that all sources share; use `open_decoder`.
 
@@ -84,7 +87,13 @@ class Decoder:
             margin: Frames given before and after the range.
             source_name: The source, for messages.
             paper: Grey that shows through transparent pixels [code value].
+            read: What the user chose.
+
+        Raises:
+            MediaError: If the range has more frames than are believed.
         """
+        self._most = read.most.frames
+        _refuse_many(info, frame_range, source_name, read)
         self.info = info
         self.warnings: list[str] = []
         """Damage that was met, one sentence each; complete once the last frame was read."""
@@ -108,7 +117,14 @@ class Decoder:
     def __next__(self) -> Frame:
         if self._iterator is None:
             self._iterator = self._frames()
-        return next(self._iterator)
+        frame = next(self._iterator)
+        # a file need not say how many it has
+        if self._delivered > self._most + self._before + self._after:
+            self.close()
+            rest = "the rest is left out; --limits frames=N raises that"
+            self.warnings.append(f"more than {self._most} frames: {rest}")
+            raise StopIteration
+        return frame
 
     def __enter__(self) -> "Decoder":
         return self
@@ -180,7 +196,7 @@ class _FileDecoder(Decoder):
         path: Path,
         wanted: FrameRange,
         margin: tuple[int, int],
-        max_pixels: int,
+        max_pixels: int | None,
         threads: int,
         paper: int,
         read: ReadOptions,
@@ -189,10 +205,10 @@ class _FileDecoder(Decoder):
         try:
             info = describe(self._source, read)
             profile = self._source.profile_of(self._source.first_frame())
+            super().__init__(info, wanted, margin, str(path), paper, read)
         except BaseException:
             self._source.close()
             raise
-        super().__init__(info, wanted, margin, str(path), paper)
         self._profile = profile
         self._read = read
         self._end = Fraction(0)
@@ -275,7 +291,7 @@ class _SequenceDecoder(Decoder):
         pattern: NumberedPattern,
         wanted: FrameRange,
         margin: tuple[int, int],
-        max_pixels: int,
+        max_pixels: int | None,
         paper: int,
         read: ReadOptions,
     ) -> None:
@@ -284,7 +300,7 @@ class _SequenceDecoder(Decoder):
         self._max_pixels, self._read = max_pixels, read
         refuse_gaps(pattern, self._numbers, wanted)
         info = describe_sequence(pattern, self._numbers, max_pixels, read)
-        super().__init__(info, wanted, margin, pattern.text, paper)
+        super().__init__(info, wanted, margin, pattern.text, paper, read)
 
     def _frames(self) -> Iterator[Frame]:
         numbers = self._given()
@@ -305,6 +321,20 @@ class _SequenceDecoder(Decoder):
         if not held:
             return []
         return in_step[max(0, held[0] - self._before) : held[-1] + 1 + self._after]
+
+
+def _refuse_many(info: MediaInfo, wanted: FrameRange, name: str, read: ReadOptions) -> None:
+    """Refuse a range that has more frames than are believed, if that can be told."""
+    most = read.most.frames
+    expected = expected_frames(wanted, info)
+    if expected is None or expected <= most:
+        return
+    if info.kind == "video":  # files may state too many
+        counted = replace(info, frame_count=count_frames(info.path, read))
+        expected = expected_frames(wanted, counted)
+    if expected is not None and expected > most:
+        remedy = "take a part by --frames A-B, or raise --limits frames=N"
+        raise MediaError(name, f"{expected} frames, more than {most}", remedy)
 
 
 def _no_such_times(name: str, wanted: FrameRange, info: MediaInfo, available: str) -> str:

@@ -6,9 +6,6 @@ from pathlib import Path
 
 from stages.media.orientation import Orientation
 
-DEFAULT_MAX_PIXELS = 100_000_000
-"""Largest picture that is opened [px]; larger ones are taken for an attack or a mistake."""
-
 
 @dataclass(frozen=True)
 class MediaInfo:

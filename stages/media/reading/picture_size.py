@@ -1,4 +1,4 @@
-"""Pictures that are too large to be opened."""
+"""Files that are too large to be opened, in pixels and in streams."""
 
 from pathlib import Path
 
@@ -22,5 +22,20 @@ def check_size(path: Path, width: int, height: int, max_pixels: int) -> None:
             path,
             f"{width}x{height} is {width * height / 1e6:.0f} million pixels, "
             f"more than {max_pixels / 1e6:.0f} million",
-            "scale it down with another program first",
+            "scale it down with another program first, or raise --limits pixels=N for a source",
         )
+
+
+def check_streams(path: Path, count: int, most: int) -> None:
+    """Refuse files of too many streams.
+
+    Args:
+        path: The file, for the message.
+        count: How many it has.
+        most: The limit.
+
+    Raises:
+        MediaError: If it has more.
+    """
+    if count > most:
+        raise MediaError(path, f"has more than {most} streams", "raise --limits streams=N")

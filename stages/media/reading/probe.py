@@ -11,7 +11,7 @@ from av.video.frame import VideoFrame
 from stages.media.color.yuv import read_color
 from stages.media.naming import NumberedPattern, input_pattern
 from stages.media.orientation import sane_aspect
-from stages.media.reading.info import DEFAULT_MAX_PIXELS, MediaInfo
+from stages.media.reading.info import MediaInfo
 from stages.media.reading.read_options import AS_IT_COMES, ReadOptions
 from stages.media.reading.sequence import existing_numbers, note_on_left_out
 from stages.media.reading.source import VideoSource
@@ -33,14 +33,14 @@ _BARE_STREAMS = frozenset(
 def probe(
     path: str | Path,
     *,
-    max_pixels: int = DEFAULT_MAX_PIXELS,
+    max_pixels: int | None = None,
     read: ReadOptions = AS_IT_COMES,
 ) -> MediaInfo:
     """Look at a source without decoding more than its first frame.
 
     Args:
         path: A video, a still, or a pattern of numbered stills.
-        max_pixels: Largest picture that is opened [px].
+        max_pixels: Largest picture that is opened [px]; None for what was chosen.
         read: What the user chose.
 
     Raises:
@@ -109,7 +109,7 @@ def describe(source: VideoSource, read: ReadOptions = AS_IT_COMES) -> MediaInfo:
 
 
 def describe_sequence(
-    pattern: NumberedPattern, numbers: list[int], max_pixels: int, read: ReadOptions
+    pattern: NumberedPattern, numbers: list[int], max_pixels: int | None, read: ReadOptions
 ) -> MediaInfo:
     """Properties of numbered stills, by their first one.
 

@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field
 from fractions import Fraction
 
+from stages.media.reading.limits import Limits
 from warp_kernels.errors import OptionError
 
 MAX_RATE = 1000
@@ -45,6 +46,17 @@ class ReadOptions:
     )
     """Index of the video stream; None for the one that players show."""
 
+    limits: str | None = field(
+        default=None,
+        metadata={
+            "help": "the most that a source may have, such as pixels=N,frames=N,streams=N; a file "
+            "that has more is refused (default: pixels=100000000,frames=1000000,streams=1000)",
+            "metavar": "KEY=N,...",
+            "group": "range",
+        },
+    )
+    """What is believed of a file, see `Limits.parse`; None for its defaults."""
+
     def __post_init__(self) -> None:
         if self.fps is not None and not 0 < self.fps <= MAX_RATE:
             raise OptionError(f"--fps {self.fps}: must be above 0 and at most {MAX_RATE}; try 24")
@@ -52,6 +64,12 @@ class ReadOptions:
             raise OptionError(f"--page {self.page}: pages count from 1")
         if self.stream is not None and self.stream < 0:
             raise OptionError(f"--stream {self.stream}: streams count from 0")
+        Limits.parse(self.limits)
+
+    @property
+    def most(self) -> Limits:
+        """What is believed of a file."""
+        return Limits.parse(self.limits)
 
     @property
     def rate(self) -> Fraction:

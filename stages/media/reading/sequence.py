@@ -80,7 +80,7 @@ def refuse_gaps(pattern: NumberedPattern, numbers: list[int], wanted: FrameRange
 def still_frames(
     pattern: NumberedPattern,
     numbers: list[int],
-    max_pixels: int,
+    max_pixels: int | None,
     read: ReadOptions,
     problems: list[str],
 ) -> Iterator[tuple[int, VideoSource, VideoFrame]]:

@@ -17,7 +17,7 @@ from stages.media.reading.container import (
     reason_of,
 )
 from stages.media.reading.pages import pages_of, with_page_first
-from stages.media.reading.picture_size import check_size
+from stages.media.reading.picture_size import check_size, check_streams
 from stages.media.reading.read_options import AS_IT_COMES, ReadOptions
 from stages.media.reading.side_data import side_data
 from warp_kernels.device.memory import MORE_MEMORY, is_limit_near
@@ -35,13 +35,17 @@ class VideoSource:
     """
 
     def __init__(
-        self, path: Path, max_pixels: int, threads: int = 0, read: ReadOptions = AS_IT_COMES
+        self,
+        path: Path,
+        max_pixels: int | None = None,
+        threads: int = 0,
+        read: ReadOptions = AS_IT_COMES,
     ) -> None:
         """Open a file.
 
         Args:
             path: A local file.
-            max_pixels: Largest picture that is decoded [px].
+            max_pixels: Largest picture that is decoded [px]; None for what was chosen.
             threads: Decoder threads, 0 for one per core.
             read: What the user chose.
 
@@ -54,6 +58,7 @@ class VideoSource:
         """Number of packets that could not be decoded so far."""
         self.reason = ""
         """Why the first of them could not."""
+        max_pixels = read.most.pixels if max_pixels is None else max_pixels
         self._max_pixels = max_pixels
         self._guard = max_pixels + max_pixels // 8 + 2**16  # decoders round sizes up
         self._threads = threads
@@ -63,8 +68,10 @@ class VideoSource:
 
     def _open(self) -> None:
         read = self._read
-        self.container = open_container(self.path, self._guard, read.fps)
+        most = read.most.streams
+        self.container = open_container(self.path, self._guard, read.fps, max_streams=most)
         try:
+            check_streams(self.path, len(self.container.streams), most)
             pages = self._choose_page()
             self._photo = open_photo(self.path, self.container, self._max_pixels, read.page)
             chosen = self._photo or choose_video(self.container, self.path, read.stream)
