@@ -76,12 +76,13 @@ def _say_at_once(arguments: argparse.Namespace) -> None:
 
 
 def _piped(arguments: argparse.Namespace) -> AbstractContextManager[None]:
-    """Files in place of `-`, if a name is one."""
+    """Files in place of `-` and of addresses, if a name is one."""
     if "inputs" in arguments:
         take(arguments, arguments.inputs[0])
     keys = (*inputs_of(arguments), "output")
-    names = (getattr(arguments, key, None) or "" for key in keys)
-    if not any(name.startswith("-") for name in names):
+    names = [getattr(arguments, key, None) or "" for key in keys]
+    names += getattr(arguments, "inputs", [])
+    if not any(name.startswith("-") or "://" in name for name in names):
         return nullcontext()
     from pipeline.commands.pipes import piped
 

@@ -46,19 +46,23 @@ def check_options(arguments: argparse.Namespace) -> None:
 
 def _animate(arguments: argparse.Namespace) -> "Animated":
     job = _job(arguments)
+    _check_report(job.run, job.output, job.solve.source)
     with progress_for(arguments) as progress:
         with importing():
             from pipeline.farm.runners import runner_for
             from pipeline.loop.animate import animate
 
         result = animate(job, progress, runner_for(job.run))
-        return _tell(progress, result, job.output.path)
+        _tell(progress, result, job.output.path)
+        _report(arguments, job, result)
+        return result
 
 
 def _solve(arguments: argparse.Namespace) -> "Animated":
     from pipeline.timeline.mesh_course import with_course
 
     job = with_course(solve_job(arguments))
+    _check_report(job.run, job.output, job.solve.source)
     with progress_for(arguments) as progress:
         with importing():
             from pipeline.farm.runners import runner_for
@@ -66,12 +70,15 @@ def _solve(arguments: argparse.Namespace) -> "Animated":
 
         runner = runner_for(job.run)
         result = solve(job.solve, job.output, job.run, progress, runner=runner)
-        return _tell(progress, result, job.output.track)
+        _tell(progress, result, job.output.track)
+        _report(arguments, job, result)
+        return result
 
 
 def _render(arguments: argparse.Namespace) -> "Animated":
     source = None if arguments.source is None else Path(arguments.source)
     wanted = _wanted(arguments)
+    _check_report(wanted[3], wanted[2], Path(arguments.track))
     with importing():
         from pipeline.look.render_job import render_job
         from pipeline.loop.render import render
@@ -84,7 +91,9 @@ def _render(arguments: argparse.Namespace) -> "Animated":
         for warning in made.warnings:
             progress.warn(warning)
         result = render(made.job, track, made.info, progress)
-        return _tell(progress, result, made.job.output.path)
+        _tell(progress, result, made.job.output.path)
+        _report(arguments, made.job, result, made.notes, made.warnings)
+        return result
 
 
 def preview_of(arguments: argparse.Namespace) -> str:
@@ -174,8 +183,8 @@ def progress_for(arguments: argparse.Namespace) -> "Progress":
     return open_progress(chosen, verbose=verbose)
 
 
-def _tell(progress: "Progress", result: "Animated", output: Path | None) -> "Animated":
-    """Tell what came of a run, and give it on."""
+def _tell(progress: "Progress", result: "Animated", output: Path | None) -> None:
+    """Tell what came of a run."""
     assert output is not None
     from pipeline.commands.pipes import shown_name
     from pipeline.progress import Summary
@@ -185,4 +194,36 @@ def _tell(progress: "Progress", result: "Animated", output: Path | None) -> "Ani
     for warning in result.warnings:
         progress.warn(warning)
     progress.finish(Summary(result.frames, result.seconds, result.mean_rmse, shown_name(output)))
-    return result
+
+
+def _check_report(run: "Run", output: "Output", source: Path) -> None:
+    """Refuse a report that could not be written, before any work is done."""
+    if run.report is not None:
+        from pipeline.reporting.place import check_report
+
+        check_report(run, output, source)
+
+
+def _report(
+    arguments: argparse.Namespace,
+    job: "Job",
+    result: "Animated",
+    notes: tuple[str, ...] = (),
+    warnings: tuple[str, ...] = (),
+) -> None:
+    """Write the report of a run, if one is wanted."""
+    if job.run.report is None:
+        return
+    from pipeline.commands.pipes import shown_name
+    from pipeline.reporting.telling import Telling
+    from pipeline.reporting.write import write_report
+
+    track = Path(arguments.track) if arguments.command == "render" else job.output.track
+    source = track if arguments.command == "render" else job.solve.source
+    output = job.output.path or job.output.track
+    assert source is not None
+    assert output is not None
+    called = getattr(arguments, "address", None) or str(shown_name(source))
+    names = (called, str(shown_name(output)))
+    given = given_by(arguments)
+    write_report(Telling(arguments.command, given, *names, result, notes, warnings), job, track)

@@ -122,6 +122,7 @@ def _add_animate(commands: Any) -> None:
     _add_output(
         parser, "OUTPUT", "mp4, mov, mkv, webm, gif, a still, or stills such as shot_####.png"
     )
+    _add_allow_url(parser)
     add_job_options(parser, "animate")
     _add_messages(parser)
 
@@ -136,6 +137,7 @@ def _add_solve(commands: Any) -> None:
     )
     _add_inputs(parser, "INPUT", "what FFmpeg reads, or a folder of it")
     _add_output(parser, "JOB.mtrk", "the mesh track")
+    _add_allow_url(parser)
     add_job_options(parser, "solve")
     _add_messages(parser)
 
@@ -182,6 +184,7 @@ def _add_preview(commands: Any) -> None:
         help="a still (default: the name of the input and .preview.png, in this folder)",
     )
     parser.add_argument("--json", action="store_true", help="print figures as JSON")
+    _add_allow_url(parser)
     add_job_options(parser, "preview")
     _add_messages(parser)
 
@@ -209,6 +212,14 @@ def _add_output(parser: argparse.ArgumentParser, metavar: str, text: str) -> Non
         type=text_value,
         required=True,
         help=text,
+    )
+
+
+def _add_allow_url(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--allow-url",
+        action="store_true",
+        help="INPUT may be an http or https address; it is fetched whole, into a temporary file",
     )
 
 

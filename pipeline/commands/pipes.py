@@ -1,4 +1,4 @@
-"""`-` for a source or an output: standard input and standard output, by way of temporary files.
+"""Temporary files for what is none: `-` for standard input and standard output, and addresses.
 
 Most formats must be read and written out of order, which a pipe cannot be.
 """
@@ -11,13 +11,14 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
+from pipeline.commands.addresses import fetched, is_address, refuse_address
 from pipeline.commands.inputs import PIPE, inputs_of, is_pipe
 from pipeline.options.output_name import is_still
 from warp_kernels.errors import MediaError, OptionError, TrimotionError
 
 FORMATS = {"solve": ".mtrk", "join": ".mtrk", "preview": ".png", "listen": ".json"}
 """Ending of an output whose name does not say, by the command; PNG or Matroska for the others."""
-_MADE = "standard output"
+_MADE, _RECEIVED = "standard output", "standard input"
 
 
 @contextmanager
@@ -25,17 +26,18 @@ def piped(arguments: argparse.Namespace) -> Iterator[None]:
     """Put files in place of pipes while a command runs, and send an output on after it.
 
     Args:
-        arguments: What the user gave; names of pipes are replaced.
+        arguments: What the user gave; names of pipes and addresses are replaced.
 
     Raises:
-        MediaError: If nothing comes through the pipe.
+        MediaError: If nothing comes through the pipe, or an address is not allowed.
         OptionError: If standard input or output is asked for twice.
     """
     given = vars(arguments)
     inputs = [key for key in inputs_of(arguments) if given.get(key) == PIPE]
     output = given.get("output") or ""
     writes = is_pipe(output) and arguments.command not in ("measure", "plan")
-    if not inputs and not writes:
+    address = _address_in(arguments)
+    if not inputs and not writes and address is None:
         yield
         return
     if arguments.command == "plan" and given["format"] not in ("text", "json"):
@@ -45,20 +47,46 @@ def piped(arguments: argparse.Namespace) -> Iterator[None]:
     if writes and given.get("progress") == "json":
         raise OptionError("-o -: standard output is taken by --progress json; choose another")
     with tempfile.TemporaryDirectory(prefix="trimotion-") as folder:
-        received = Path(folder) / "standard input"
+        received = Path(folder) / _RECEIVED
         for key in inputs:
             setattr(arguments, key, str(_received(received)))
+        names = {received: PIPE}
+        if address is not None:
+            place = Path(folder) / "fetched"
+            place.mkdir()
+            source = fetched(address, place)
+            names[source] = arguments.address = address
+            arguments.source = str(source)
         if not writes:
-            with _told_as({received: PIPE}):
+            with _told_as(names):
                 yield
             return
         made = Path(folder) / f"{_MADE}{output[1:] or _ending_for(arguments)}"
         arguments.output = str(made)
-        with _told_as({received: PIPE, made: output}):
+        with _told_as({**names, made: output}):
             yield
         with made.open("rb") as file:
             shutil.copyfileobj(file, sys.stdout.buffer)
         sys.stdout.buffer.flush()
+
+
+def _address_in(arguments: argparse.Namespace) -> str | None:
+    """The address that is to be fetched, if the source is one.
+
+    Raises:
+        MediaError: If nobody allowed that.
+        OptionError: If it is one of several inputs.
+    """
+    if "allow_url" not in arguments:
+        return None
+    named = [name for name in getattr(arguments, "inputs", [arguments.source]) if is_address(name)]
+    if not named:
+        return None
+    if not arguments.allow_url:
+        refuse_address(named[0])
+    if len(getattr(arguments, "inputs", named)) > 1:
+        raise OptionError(f"{named[0]}: an address is an input of its own; name it alone")
+    return named[0]
 
 
 @contextmanager
@@ -75,12 +103,12 @@ def _told_as(names: Mapping[Path, str]) -> Iterator[None]:
 
 
 def shown_name(path: Path) -> Path:
-    """What a user calls an output.
+    """What a user calls a source or an output.
 
     Args:
-        path: The file that is written.
+        path: The file that is read or written.
     """
-    return Path(PIPE) if path.stem == _MADE else path
+    return Path(PIPE) if path.stem in (_MADE, _RECEIVED) else path
 
 
 def _ending_for(arguments: argparse.Namespace) -> str:

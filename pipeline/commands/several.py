@@ -125,8 +125,13 @@ def _check_shared(arguments: argparse.Namespace) -> None:
     """Refuse one file that all outputs would share.
 
     Raises:
-        OptionError: If a track is named for all.
+        OptionError: If a track or a report is named for all.
     """
     track = getattr(arguments, "track", None)
     if arguments.command != "render" and track is not None and _tracks_of(arguments) is None:
         raise OptionError(f"--track {track}: several inputs: name a folder, such as tracks/")
+    if "report" in arguments:
+        raise OptionError(
+            f"--report {arguments.report}: several inputs: a report tells of one; convert them one "
+            "by one"
+        )

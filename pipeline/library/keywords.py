@@ -87,6 +87,7 @@ class SolveKeywords(AnimatorKeywords, SourceKeywords, total=False):
     edits: Any
     jobs: int
     cluster: str | None
+    report: Name | None
     overwrite: bool
     resume: bool
 
@@ -120,6 +121,7 @@ class OutputKeywords(TypedDict, total=False):
     audio: bool
     audio_mode: Name
     audio_offset: float
+    report: Name | None
     overwrite: bool
     svg_precision: int
     svg_merge: bool

@@ -4,6 +4,7 @@ What is heavy is imported by the calls.
 """
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack, cast
 
@@ -27,6 +28,8 @@ if TYPE_CHECKING:
     from pipeline.compare.report import Report
     from pipeline.loop.result import Animated
     from pipeline.options.job import Job
+    from pipeline.options.output import Output
+    from pipeline.options.run import Run
 
 
 @with_keywords("animate")
@@ -51,9 +54,11 @@ def animate(
         from pipeline.farm.runners import runner_for
         from pipeline.loop.animate import animate as run
 
-        return _result(
-            Path(job.solve.source), run(job, told, runner_for(job.run)), job.output.path, told
-        )
+        _check_report(job.run, job.output, job.solve.source)
+        animated = run(job, told, runner_for(job.run))
+        result = _result(Path(job.solve.source), animated, job.output.path, told)
+        _report("animate", options, job, job.solve.source, result, animated)
+        return result
 
 
 @with_keywords("solve")
@@ -81,8 +86,11 @@ def solve(
         from pipeline.timeline.mesh_course import with_course
 
         job = with_course(job)
+        _check_report(job.run, job.output, job.solve.source)
         solved = run(job.solve, job.output, job.run, told, runner=runner_for(job.run))
-        return _result(Path(job.solve.source), solved, job.output.track, told)
+        result = _result(Path(job.solve.source), solved, job.output.track, told)
+        _report("solve", options, job, job.solve.source, result, solved)
+        return result
 
 
 @with_keywords("render")
@@ -118,10 +126,13 @@ def render(
     from pipeline.track.kind import drawn_ending
 
     frames, look, written, run = build_render({**given, "output": target}, path, drawn_ending(path))
+    _check_report(run, written, path)
     with TrackReader(path) as reader, progress_for(progress) as told:
         made = render_job(reader, frames, staged(look), written, run, moved)
         drawn = draw(made.job, reader, made.info, told)
-        return _result(path, drawn, made.job.output.path, told, made.notes, made.warnings)
+        result = _result(path, drawn, made.job.output.path, told, made.notes, made.warnings)
+        _report("render", options, made.job, path, result, drawn)
+        return result
 
 
 @with_keywords("measure")
@@ -197,3 +208,31 @@ def _result(
         told.warn(text)
     told.finish(Summary(result.frames, result.seconds, result.mean_rmse, output))
     return result
+
+
+def _check_report(run: "Run", output: "Output", source: Path) -> None:
+    """Refuse a report that could not be written, before any work is done."""
+    if run.report is not None:
+        from pipeline.reporting.place import check_report
+
+        check_report(run, output, source)
+
+
+def _report(
+    function: str,
+    options: Mapping[str, Any],
+    job: "Job",
+    source: Path,
+    result: Result,
+    animated: "Animated",
+) -> None:
+    """Write the report of a run, if one is wanted; its sentences are those of the result."""
+    if job.run.report is None:
+        return
+    from pipeline.reporting.telling import Telling
+    from pipeline.reporting.write import write_report
+
+    given, track = given_values(function, options), job.output.track
+    told = replace(animated, notes=result.notes, warnings=result.warnings)
+    telling = Telling(function, given, str(source), str(result.output), told)
+    write_report(telling, job, source if function == "render" else track)

@@ -153,8 +153,9 @@ def _joined(
     if len(parts) < runner.places:
         notes = (*notes, f"{len(parts)} shots: so many processes, not {runner.places}")
     warnings = _each_once(text for result in results for text in result.warnings)
-    frames = sum(result.frames for result in results)
-    return Animated(frames, perf_counter() - begun, mean, warnings, notes)
+    frames, seconds = sum(result.frames for result in results), perf_counter() - begun
+    figures = tuple(figure for result in results for figure in result.figures)
+    return Animated(frames, seconds, mean, warnings, notes, figures, (("solving", seconds),))
 
 
 def _each_once(texts: Iterable[str]) -> tuple[str, ...]:
@@ -197,6 +198,7 @@ def _solved_then_drawn(job: Job, progress: Progress, runner: RangeRunner) -> Ani
         seconds=perf_counter() - begun,
         warnings=(*solved.warnings, *result.warnings),
         notes=_each_once([*solved.notes, *result.notes]),
+        stages=(("solving", solved.seconds), ("drawing", result.seconds)),
     )
 
 

@@ -71,7 +71,7 @@ def convert(job: Job, fitted: ColorModel, progress: Progress) -> Animated:
         # in this order all kernels of the job are compiled together
         drawing = open_drawing(job, info, device) if draws else None
         triangulator = triangulator_of(options, size, device, fitted)
-        tally = Tally(progress, _expected(options, info))
+        tally = Tally(job, progress, _expected(options, info))
         restarts: list[str] = []
         refused: list[str] = []
         found = _opened(decoder, attention, maps, options, past, restarts)
@@ -84,7 +84,7 @@ def convert(job: Job, fitted: ColorModel, progress: Progress) -> Animated:
                 frames = solved_frames(found, triangulator, options, past, refused, keeps=keeps)
                 for solved in frames:
                     writer.put(solved)
-                    tally.add(solved.snapshot.mesh.triangle_count, solved.snapshot.rmse)
+                    tally.solved(solved)
             if track is not None:
                 track.finish()
     made = [] if drawing is None else drawing.notes
@@ -175,9 +175,12 @@ def _recall(job: Job, tally: Tally, writer: Behind[Solved] | None) -> None:
         rows = track.rows_in(options.frame_range)
         sources = source_pictures(options, job.look, rows) if is_drawn else [None] * len(rows)
         for row, source in zip(rows, sources, strict=True):
-            if writer is not None:
-                writer.put(Solved(row.shot, track.snapshot(row.frame), source, is_stored=True))
-            tally.add(row.triangle_count, row.rmse, is_told=is_drawn)
+            if writer is None:
+                tally.recalled(row)
+                continue
+            solved = Solved(row.shot, track.snapshot(row.frame), source, is_stored=True)
+            writer.put(solved)
+            tally.solved(solved)
 
 
 class _Writer:

@@ -55,7 +55,7 @@ def drawn(job: Job, track: TrackReader, info: MediaInfo, progress: Progress) -> 
     options, look = job.solve, job.look
     device = Device(job.run.device, job.run.threads, progress.kernels)
     shown = track.rows_in(options.frame_range)
-    tally = Tally(progress, len(shown))
+    tally = Tally(job, progress, len(shown))
     drawing = open_drawing(job, info, device)
     with device, drawing, Behind(drawing.draw, SOLVED_BEHIND) as writer:
         leading = _leading(track, shown, options.seam)
@@ -64,7 +64,7 @@ def drawn(job: Job, track: TrackReader, info: MediaInfo, progress: Progress) -> 
             for solved in _solved(job, track, seen, standings, device):
                 writer.put(solved)
                 if solved.is_shown and not standings:
-                    tally.add(solved.snapshot.mesh.triangle_count, solved.snapshot.rmse)
+                    tally.solved(solved)
     return tally.result(begun, (), [*device.notes, *drawing.notes, *_unsolved(look, options)])
 
 

@@ -110,14 +110,17 @@ _SOLVING = {
 """Groups and options that mean nothing once there is a track."""
 
 _HEARD = ("audio_mode", "audio_offset", "beats")
-_SOLVED_WITH = ("overwrite", "resume", *_HEARD)
+_SOLVED_WITH = ("overwrite", "resume", "report", *_HEARD)
 """Options of an output that a track has, and those that say what a timeline hears."""
 
 _NOT_EDITED = ("track", "resume", "overwrite", "loop", "timeline", "cluster", *_HEARD)
 """Options that mean nothing for a track that is edited."""
 
-_ONCE = ("jobs", "cluster", "resume", "loop")
+_ONCE = ("jobs", "cluster", "resume", "report", "loop")
 """Options of one run that solves all."""
+
+_NOT_PREVIEWED = ("track", "resume", "report", "jobs", "cluster", "edits", "loop")
+"""Options that mean nothing for a few moments."""
 
 _LOOKED_AT = ("styles", "regions", "palette", "grade", "background", "fps", *_HEARD)
 """Options that say what a timeline may change, and when."""
@@ -127,7 +130,7 @@ COMMAND_OPTIONS: dict[str, Callable[[Option], bool]] = {
     "solve": lambda o: o.group not in ("look", "output") or o.dest in _SOLVED_WITH,
     "render": lambda o: not _SOLVING & {o.group, o.dest},
     "edit": lambda o: o.group not in ("look", "output") and o.dest not in _NOT_EDITED,
-    "preview": lambda o: o.dest not in ("track", "resume", "jobs", "cluster", "edits", "loop"),
+    "preview": lambda o: o.dest not in _NOT_PREVIEWED,
     "plan": lambda o: COMMAND_OPTIONS["solve"](o) and o.dest not in _ONCE,
     "measure": lambda o: o in RANGE_OPTIONS,
     "timeline": lambda o: o.dest in _LOOKED_AT,

@@ -42,6 +42,16 @@ class Run:
         },
     )
     """Where a cluster is, or None."""
+    report: str | None = field(
+        default=None,
+        metadata={
+            "help": "also write what came of the run: options, versions, figures of every frame, "
+            "times, warnings; .html holds pictures and plots",
+            "metavar": "FILE.json|FILE.html",
+            "group": "output",
+        },
+    )
+    """The report that is written, or None; figures of frames are kept for it alone."""
 
     def __post_init__(self) -> None:
         if not _DEVICE.fullmatch(self.device):

@@ -1,0 +1,164 @@
+"""`--allow-url`: sources on the web, fetched only if the user says so."""
+
+import json
+import threading
+from collections.abc import Iterator
+from functools import partial
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
+
+import pytest
+
+from pipeline.cli import main
+from pipeline.commands.addresses import fetched, is_address
+from tests.tracks import QUICK_FLAGS, write_clip
+from warp_kernels.errors import MediaError
+
+ODD = {
+    "/x/../..%2F..%2Fetc%2Fpasswd": "passwd",
+    "/clips/shot_%23%23%23%23.png?q=1#t": "shot_____.png",
+    "/%2e%2e": "download",
+    "/": "download",
+    "/a%00b.mp4": "a_b.mp4",
+    "/-x.mp4": "x.mp4",
+    f"/{'n' * 300}.mp4": f"{'n' * 116}.mp4",
+}
+"""Paths of addresses, and what the file is called."""
+
+
+class Server(SimpleHTTPRequestHandler):
+    """Serves a folder, and some answers that are none."""
+
+    def do_GET(self) -> None:
+        """Answer."""
+        path = self.path.split("?")[0]
+        if path.startswith("/away/"):
+            self.send_response(302)
+            self.send_header("Location", "file:///etc/hostname" if "file" in path else "/clip.mkv")
+            self.end_headers()
+        elif path == "/short.mp4":
+            self.send_response(200)
+            self.send_header("Content-Length", "5000")
+            self.end_headers()
+            self.wfile.write(b"x" * 100)
+        elif path in (odd.split("?")[0] for odd in ODD) or path == "/text.mp4":
+            self.send_response(200)
+            self.end_headers()
+            self.wfile.write(b"no film")
+        else:
+            super().do_GET()
+
+    def log_message(self, *_: object) -> None:
+        """Say nothing."""
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, Path]]:
+    """The address of a server on this machine, and its folder with a clip."""
+    folder = tmp_path_factory.mktemp("site")
+    write_clip(folder / "clip.mkv")
+    server = ThreadingHTTPServer(("127.0.0.1", 0), partial(Server, directory=str(folder)))
+    thread = threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.02})
+    thread.start()
+    yield f"http://127.0.0.1:{server.server_port}", folder
+    server.shutdown()
+    thread.join()
+    server.server_close()
+
+
+@pytest.fixture(autouse=True)
+def no_proxy(monkeypatch: pytest.MonkeyPatch) -> None:
+    """This machine is reached directly."""
+    monkeypatch.setenv("no_proxy", "127.0.0.1")
+
+
+def animate(source: str, output: Path | str, *flags: str) -> int:
+    """A quick run of three frames."""
+    return main(
+        ["animate", source, "-o", str(output), *QUICK_FLAGS, "--frames", "0-2", "-q", *flags]
+    )
+
+
+def test_a_film_on_the_web_is_as_good_as_a_file(site: tuple[str, Path], tmp_path: Path) -> None:
+    """The same bits, by a redirection as well; a folder takes its name, a report its address."""
+    address, folder = site
+    assert animate(str(folder / "clip.mkv"), tmp_path / "file.mkv") == 0
+    flags = ("--allow-url", "--report", str(tmp_path / "r.json"))
+    assert animate(f"{address}/away/there", f"{tmp_path}/out/", *flags) == 0
+    assert (tmp_path / "out/clip.mkv").read_bytes() == (tmp_path / "file.mkv").read_bytes()
+    assert json.loads((tmp_path / "r.json").read_text())["source"] == f"{address}/away/there"
+
+
+@pytest.mark.parametrize("command", ["animate", "solve", "preview"])
+def test_nothing_is_fetched_unasked(command: str, tmp_path: Path, capsys) -> None:
+    """The line names the option."""
+    source = "https://example.invalid/clip.mp4"
+    assert main([command, source, "-o", str(tmp_path / "o.png")]) == 3
+    error = capsys.readouterr().err
+    assert error == (
+        f"trimotion: error: {source}: is an address; add --allow-url to have it fetched\n"
+    )
+
+
+@pytest.mark.parametrize(
+    ("path", "words"),
+    [
+        ("/none.mp4", "cannot be fetched (file not found)"),
+        ("/short.mp4", "cannot be fetched ("),
+        ("/away/file", "cannot be fetched ("),
+        ("/text.mp4", "not a readable media file"),
+    ],
+)
+def test_what_gives_no_film_is_one_line(
+    path: str, words: str, site: tuple[str, Path], tmp_path: Path, capsys
+) -> None:
+    """It names the address, and nothing is left."""
+    assert animate(site[0] + path, tmp_path / "o.mp4", "--allow-url") == 3
+    error = capsys.readouterr().err
+    assert error.startswith(f"trimotion: error: {site[0]}{path}: {words}")
+    assert error.count("\n") == 1
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("address", ["file:///etc/hostname", "ftp://127.0.0.1/a", "concat://a"])
+def test_other_kinds_of_addresses_are_refused(address: str, tmp_path: Path, capsys) -> None:
+    """No protocol but those of the web, allowed or not."""
+    assert animate(address, tmp_path / "o.mp4", "--allow-url") == 3
+    assert "is an address of another kind; give http or https" in capsys.readouterr().err
+
+
+def test_nobody_there_and_no_address_at_all(tmp_path: Path, capsys) -> None:
+    """A port at which nothing listens; a host that is none."""
+    for address in ("http://127.0.0.1:9/a.mp4", "http://[::bad/a.mp4", "http:///a.mp4"):
+        assert animate(address, tmp_path / "o.mp4", "--allow-url") == 3
+        error = capsys.readouterr().err
+        assert error.startswith(f"trimotion: error: {address}: cannot be fetched (")
+        assert error.count("\n") == 1
+
+
+def test_an_address_stands_alone(tmp_path: Path, capsys) -> None:
+    """One of several inputs is refused before anything is fetched."""
+    flags = ("-o", f"{tmp_path}/out/", "--allow-url")
+    assert main(["animate", "a.mp4", "http://127.0.0.1:9/b.mp4", *flags]) == 2
+    assert "an address is an input of its own" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(("path", "name"), ODD.items())
+def test_names_lead_nowhere(path: str, name: str, site: tuple[str, Path], tmp_path: Path) -> None:
+    """Whatever stands in an address."""
+    (tmp_path / "place").mkdir()
+    found = fetched(site[0] + path, tmp_path / "place")
+    assert found == tmp_path / "place" / name
+    assert [one.name for one in tmp_path.iterdir()] == ["place"]
+
+
+def test_files_are_no_addresses(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Even one that looks like an address."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "http:").mkdir()
+    (tmp_path / "http:" / "a.mp4").touch()
+    assert not is_address("http://a.mp4")
+    assert is_address("http://b.mp4")
+    assert not is_address("clip.mp4")
+    with pytest.raises(MediaError):
+        fetched("clip.mp4", tmp_path)
