@@ -38,6 +38,7 @@ IMPORT_HOMES = {
     "tomllib": ("pipeline/",),
     "tqdm": ("pipeline/",),
     "starlette": ("pipeline/editor/serving/",),
+    "dask": ("pipeline/farm/cluster/",),
     "distributed": ("pipeline/farm/cluster/",),
     "uvicorn": ("pipeline/editor/serving/",),
 }
@@ -46,7 +47,7 @@ IMPORT_HOMES = {
 RUNTIME_PACKAGES = frozenset({"warp", "numpy", "scipy", "cv2", "av", "tqdm"})
 """Import names of the run-time dependencies."""
 
-EXTRA_PACKAGES = frozenset({"distributed", "ezdxf", "pxr", "starlette", "uvicorn"})
+EXTRA_PACKAGES = frozenset({"dask", "distributed", "ezdxf", "pxr", "starlette", "uvicorn"})
 """Import names of what extras install; it is imported only where it is used."""
 
 ALLOCATING_FILES = frozenset(

@@ -141,7 +141,8 @@ def test_three_workers_one_killed_one_slow(
     solve_film(film, killed, OnCluster(cluster["file"]), progress)
     assert cluster["workers"][0].wait() == -signal.SIGKILL
     assert rows_of(killed) == whole
-    assert SHOTS * LENGTH <= progress.told <= SHOTS * LENGTH + LENGTH
+    # one shot at most is solved twice; or it was finished and its frames were not told of yet
+    assert abs(progress.told - SHOTS * LENGTH) <= LENGTH
 
 
 def test_command(film: Path, whole: dict, cluster: Mapping, tmp_path: Path, capsys) -> None:

@@ -157,10 +157,10 @@ class Crew:
         if one is None:
             return  # of a worker that was given up
         del self._busy[one.worker]
-        if future.status != "finished":
+        outcome = self._outcome(one)
+        if outcome is None:
             self._again(one.number, f"worker {one.worker} lost it")
             return
-        outcome: Fate = future.result()
         if outcome.result is None:
             if outcome.is_final:
                 raise ClusterError(outcome.error, outcome.exit_code)
@@ -169,6 +169,25 @@ class Crew:
         if outcome.track is not None:
             _write(self._parts[one.number], outcome.track)
         self._found[one.number] = outcome.result
+
+    def _outcome(self, one: _Try) -> Fate | None:
+        """What a worker made of a shot, None if it is lost.
+
+        A worker that is gone before its answer was fetched takes that along: Dask would wait for
+        one of the same address, and for ever.
+        """
+        while one.future.status == "finished":
+            try:
+                found: Fate = one.future.result(timeout=LOOK)
+            except TimeoutError:
+                if one.worker not in self._client.run_on_scheduler(_present):
+                    one.future.cancel(force=True)
+                    return None
+            except Exception:  # whatever it was, the shot is to be done again
+                return None
+            else:
+                return found
+        return None
 
     def _again(self, number: int, reason: str) -> None:
         """Put a shot back, in front."""
