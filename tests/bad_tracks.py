@@ -11,6 +11,7 @@ import sqlite3
 import zlib
 from collections.abc import Callable
 from contextlib import closing, suppress
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -159,6 +160,7 @@ def exchanged(vertices: np.ndarray, rng: np.random.Generator) -> np.ndarray:
     return points
 
 
+@lru_cache
 def bomb(megabytes: int) -> bytes:
     """Zeros, packed a thousand times smaller."""
     machine = zlib.compressobj(9)

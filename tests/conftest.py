@@ -5,7 +5,7 @@ import os
 import random
 import shutil
 import signal
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
 
@@ -71,7 +71,17 @@ def pytest_collection_finish() -> None:
 
 
 @pytest.fixture(scope="session", autouse=True)
-def no_first_run() -> None:
+def shared_cores() -> Iterator[None]:
+    """Workers side by side share the cores: threads of one would wait for those of another."""
+    workers = int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1"))
+    share = max(1, (os.cpu_count() or 1) // workers)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(os, "cpu_count", lambda: share)
+        yield
+
+
+@pytest.fixture(scope="session", autouse=True)
+def no_first_run(shared_cores: None) -> None:
     """Compile one kernel, so that what a first run says stands before no test's one line."""
     with WARP, quiet():
         settle_cache()

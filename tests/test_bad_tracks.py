@@ -192,14 +192,14 @@ from warp_kernels.styles import STYLES
 mesh = random_mesh(96, 64, 40)
 device = Device("cpu", 2)
 good = snapshot_of(device, noise(96, 64), mesh, CONSTANT)
-for value in (np.nan, np.inf, 1e300, -1e6):
-    vertices = mesh.vertices.copy()
-    vertices[::3] = value
-    bad = replace(good, mesh=mesh.moved(vertices))
-    bad = replace(bad, coefficients=np.where(good.energies[:, None, None] > 0, value, 0.0))
-    for style in STYLES.values():
+for style in STYLES.values():
+    renderer = Renderer(device, (96, 64), (96, 64), (style(),))
+    for value in (np.nan, np.inf, 1e300, -1e6):
+        vertices = mesh.vertices.copy()
+        vertices[::3] = value
+        bad = replace(good, mesh=mesh.moved(vertices))
+        bad = replace(bad, coefficients=np.where(good.energies[:, None, None] > 0, value, 0.0))
         with np.errstate(all="ignore"):
-            renderer = Renderer(device, (96, 64), (96, 64), (style(),))
             renderer.render(bad, source=noise(96, 64))
 """
 

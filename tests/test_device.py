@@ -99,8 +99,8 @@ def test_no_times_runs_nothing(device: str) -> None:
 
 
 def test_same_bits_while_meshes_change_size(device: str) -> None:
-    """A dozen meshes of any size in the same memory, by one, two and three threads."""
-    sizes = np.random.default_rng(0).integers(5, 400, 12)
+    """Eight meshes of any size in the same memory, by one, two and three threads."""
+    sizes = np.random.default_rng(0).integers(5, 400, 8)
     meshes = [random_mesh(WIDTH, HEIGHT, int(size), seed=n) for n, size in enumerate(sizes)]
     ends: list[list[np.ndarray]] = []
     for threads in (1, 2, 3):
@@ -109,7 +109,7 @@ def test_same_bits_while_meshes_change_size(device: str) -> None:
         ends.append([])
         for mesh in meshes:
             load_mesh(workspace, mesh)
-            for times in (1, 4, 9):
+            for times in (1, 4):
                 workspace.iterate(times, **STEPS)
             ends[-1] += [workspace.vertices(), *workspace.fit()]
     for other in ends[1:]:

@@ -55,8 +55,9 @@ def inside(snapshot: Snapshot) -> int:
 def test_there_are_more_triangles_through_the_shot(clip: Path, tmp_path: Path) -> None:
     counts = []
     for edits in (EditLog(), EditLog((FOCUS,))):
-        solve_to(tmp_path / f"{len(edits.edits)}.mtrk", clip, edits=edits, triangulate=MANY)
-        with TrackReader(tmp_path / f"{len(edits.edits)}.mtrk") as track:
+        solved = tmp_path / f"{len(edits.edits)}.mtrk"
+        solve_to(solved, clip, f"0-{CUT}", edits=edits, triangulate=MANY)
+        with TrackReader(solved) as track:
             counts.append([inside(track.snapshot(frame)) for frame in range(CUT + 1)])
             for frame in range(CUT):
                 assert_valid(track.snapshot(frame).mesh)

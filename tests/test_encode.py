@@ -357,13 +357,13 @@ def test_gif_lasts_as_long_as_its_source(tmp_path: Path, rate: Fraction) -> None
     """No delay is under 2/100 s, which players show as 10/100; frames are dropped evenly."""
     base = 1 / Fraction(rate)
     info = replace(
-        probe(samples.write_still(tmp_path / "a.png", samples.picture(64, 48))),
+        probe(samples.write_still(tmp_path / "a.png", samples.picture(32, 24))),
         average_rate=Fraction(rate),
     )
     count = round(rate)
-    with open_encoder(tmp_path / "a.gif", info, (64, 48), EncodeOptions()) as encoder:
+    with open_encoder(tmp_path / "a.gif", info, (32, 24), EncodeOptions()) as encoder:
         for number in range(count):
-            encoder.write(samples.picture(64, 48, number), number, base)
+            encoder.write(samples.picture(32, 24, number), number, base)
     with Image.open(tmp_path / "a.gif") as picture:
         delays = []
         for page in range(picture.n_frames):

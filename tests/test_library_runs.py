@@ -153,7 +153,7 @@ def test_what_progress_raises_ends_the_run(
 def test_calls_leave_no_threads(clip: Path, tmp_path: Path) -> None:
     """However often something is called."""
     count = threading.active_count()
-    for number in range(3):
+    for number in range(2):
         trimotion.animate(clip, tmp_path / f"{number}.png", frames=0, threads=4, **QUICK)
         trimotion.triangulate(np.zeros((20, 30), np.uint8), triangles=8, threads=4).draw()
     gc.collect()

@@ -14,7 +14,7 @@ from tests.kernel_samples import (
     random_mesh,
     random_weights,
 )
-from tests.oracles.coverage import covered_pixels
+from tests.oracles.coverage import Pixel, covered_pixels
 from tests.oracles.moments import moments
 from tests.oracles.variants import variants
 from warp_kernels.color_model import COLOR_MODELS, CONSTANT, LINEAR, ColorModel
@@ -57,16 +57,23 @@ def weights_of(picture: np.ndarray, weighted: bool) -> np.ndarray | None:
 
 
 @lru_cache
+def covered_by_oracle(name: str) -> list[tuple[int, list[Pixel]]]:
+    """Sign and pixels of all variants of all triangles."""
+    _, mesh = sample(name)
+    return [
+        covered_pixels(corners, mesh.width, mesh.height)
+        for triangle in mesh.vertices[mesh.triangles]
+        for corners in variants(triangle)
+    ]
+
+
+@lru_cache
 def sums_by_oracle(name: str, model: ColorModel, weighted: bool) -> Sums:
     """The moments of all variants, pixel by pixel."""
     picture, mesh = sample(name)
     weights = weights_of(picture, weighted)
     rows = [
-        moments(picture, pixels, model, sign, weights)
-        for triangle in mesh.vertices[mesh.triangles]
-        for sign, pixels in (
-            covered_pixels(corners, mesh.width, mesh.height) for corners in variants(triangle)
-        )
+        moments(picture, pixels, model, sign, weights) for sign, pixels in covered_by_oracle(name)
     ]
     color, area = (np.array(part, dtype=np.int64) for part in zip(*rows, strict=True))
     shape = (mesh.triangle_count, TRIANGLE_VARIANTS, -1)

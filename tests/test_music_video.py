@@ -12,7 +12,7 @@ from benchmarks.made_music import Piece, play
 from tests import media_samples as samples
 
 FRAMES, CUT = 24, 13
-QUICK = {"iterations": 8, "frame_iterations": 4, "triangles": 40, "focus": "none"}
+QUICK = {"iterations": 8, "frame_iterations": 4, "triangles": 40, "focus": "none", "threads": 1}
 SHOW = """
 bpm = 300
 [[section]]

@@ -74,13 +74,14 @@ def test_shapes_have_the_drawn_colors(shapes_clip: np.ndarray) -> None:
 def test_shapes_are_where_the_script_says(shapes_clip: np.ndarray) -> None:
     """The centroid of each unoccluded shape's colour lies within 1 px of its stated centre."""
     checked = 0
-    for index, pixels in enumerate(shapes_clip):
+    for index in sorted({*range(0, FRAME_COUNT, 3), CUT_FRAME - 1, CUT_FRAME, FRAME_COUNT - 1}):
+        pixels = shapes_clip[index]
         for name, shape in shape_positions(index).items():
             if not shape.occluded:
                 distance = np.hypot(*np.subtract(_centroid(pixels, shape.color), shape.center))
                 assert distance < CENTER_TOLERANCE, f"{name} in frame {index}"
                 checked += 1
-    assert checked > 150
+    assert checked > 50
 
 
 def test_disc_disappears_behind_the_square(shapes_clip: np.ndarray) -> None:
@@ -92,7 +93,7 @@ def test_disc_disappears_behind_the_square(shapes_clip: np.ndarray) -> None:
 
 def test_cut_is_where_the_script_says(shapes_clip: np.ndarray) -> None:
     """The step before `CUT_FRAME` is larger than every other by far."""
-    steps = np.abs(np.diff(shapes_clip, axis=0)).mean(axis=(1, 2, 3))
+    steps = np.abs(np.diff(shapes_clip[:, ::2, ::2], axis=0)).mean(axis=(1, 2, 3))
     assert int(np.argmax(steps)) + 1 == CUT_FRAME
     assert np.sort(steps)[-1] > 5 * np.sort(steps)[-2]
 
@@ -119,9 +120,10 @@ def test_song_has_the_beats_that_the_script_says() -> None:
 
 
 def test_sections_of_the_show_begin_where_the_cut_does(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The timeline of the README fits its film, and its sections begin with its parts."""
+    monkeypatch.setattr(cut_to_song, "SIZE", (320, 180))  # times do not depend on it
     film = tmp_path / "rough.mp4"
     cut_to_song.cut(film)
     words = ["timeline", str(FOLDER / "show.toml"), "--check", str(film)]

@@ -36,7 +36,7 @@ WEIGHTED = pytest.mark.parametrize("weighted", [False, True], ids=["plain", "wei
 @lru_cache
 def variants_by_oracle() -> list[list[list[Pixel]]]:
     """What all variants of the triangles of a mesh over 41 x 33 px cover."""
-    mesh = random_mesh(41, 33, 50)
+    mesh = random_mesh(41, 33, 30)
     return [
         [covered_pixels(moved, 41, 33)[1] for moved in variants(corners)]
         for corners in mesh.vertices[mesh.triangles]
@@ -61,16 +61,16 @@ def test_energies_of_all_variants_equal_the_oracle(
     weighted: bool, sums: str, model: ColorModel, device: str
 ) -> None:
     """The error of every displaced triangle, also where it leaves the picture or turns over."""
-    picture, mesh = noise(41, 33), random_mesh(41, 33, 50)
+    picture, mesh = noise(41, 33), random_mesh(41, 33, 30)
     weights = random_weights(41, 33) if weighted else None
-    actual = poisoned_workspace(Device(device), picture, mesh, model, sums, weights).energies()
+    actual = poisoned_workspace(Device(device, 1), picture, mesh, model, sums, weights).energies()
     expected = energies_by_oracle(model, weighted)
     np.testing.assert_allclose(actual, expected, rtol=0, atol=ENERGY_TOLERANCE)
 
 
 @MODELS
 @WEIGHTED
-@pytest.mark.parametrize("inner", [6, 60, 600])
+@pytest.mark.parametrize("inner", [6, 60, 300])
 def test_colors_equal_the_oracle(
     inner: int, weighted: bool, model: ColorModel, device: str
 ) -> None:
@@ -78,7 +78,7 @@ def test_colors_equal_the_oracle(
     picture, mesh = noise(45, 31, seed=inner), random_mesh(45, 31, inner, seed=inner)
     weights = random_weights(45, 31) if weighted else None
     factors = np.ones((31, 45), dtype=int) if weights is None else weights.astype(int)
-    workspace = poisoned_workspace(Device(device), picture, mesh, model, weights=weights)
+    workspace = poisoned_workspace(Device(device, 1), picture, mesh, model, weights=weights)
     coefficients, energies, counts = workspace.fit()
     powers = np.array(model.exponents)
     for triangle, corners in enumerate(mesh.vertices[mesh.triangles].tolist()):
@@ -98,7 +98,7 @@ def test_more_terms_leave_no_more_energy(weighted: bool, device: str) -> None:
     picture, mesh = noise(61, 47), random_mesh(61, 47, 90, seed=2)
     weights = random_weights(61, 47) if weighted else None
     constant, linear, quadratic = (
-        poisoned_workspace(Device(device), picture, mesh, model, weights=weights).energies()
+        poisoned_workspace(Device(device, 1), picture, mesh, model, weights=weights).energies()
         for model in (CONSTANT, LINEAR, QUADRATIC)
     )
     assert (quadratic <= linear).all()
@@ -113,7 +113,7 @@ def test_weights_draw_the_colour_to_what_counts(device: str) -> None:
     weights = np.where(picture[..., 0] > 0, 255, 1).astype(np.uint8)
     points = np.array([[0, 0], [20, 0], [20, 20], [0, 20]])
     mesh = mesh_of(points, [[0, 1, 3], [1, 2, 3]], 20, 20)
-    workspace = poisoned_workspace(Device(device), picture, mesh, CONSTANT, weights=weights)
+    workspace = poisoned_workspace(Device(device, 1), picture, mesh, CONSTANT, weights=weights)
     coefficients, energies, _ = workspace.fit()
     assert (coefficients[:, :, 0] > 195).all()
     errors = (picture[None] - coefficients[:, None, None, :, 0]) ** 2
@@ -148,7 +148,9 @@ def test_polynomial_of_the_degree_has_no_energy(
     paint, side = (linear_picture, 47) if model is LINEAR else (quadratic_picture, 16)
     mesh = random_mesh(side, side, 25 if model is LINEAR else 9, seed=3)
     weights = random_weights(side, side) if weighted else None
-    workspace = poisoned_workspace(Device(device), paint(side, side), mesh, model, weights=weights)
+    workspace = poisoned_workspace(
+        Device(device, 1), paint(side, side), mesh, model, weights=weights
+    )
     # a displaced triangle whose pixels lie on one line or conic has less to offer
     regular = [_is_regular(c, side, model.degree) for c in mesh.vertices[mesh.triangles]]
     assert sum(regular) > (25 if model is LINEAR else 8)
@@ -159,7 +161,7 @@ def test_polynomial_of_the_degree_has_no_energy(
 def test_plain_picture_has_no_energy(model: ColorModel, device: str) -> None:
     """One colour leaves no error in any triangle or variant, whatever its pixels."""
     mesh = random_mesh(53, 47, 60, seed=3)
-    workspace = poisoned_workspace(Device(device), plain_picture(53, 47), mesh, model)
+    workspace = poisoned_workspace(Device(device, 1), plain_picture(53, 47), mesh, model)
     assert np.abs(workspace.energies()).max() < ENERGY_TOLERANCE
 
 
@@ -172,7 +174,7 @@ def _is_regular(corners: np.ndarray, side: int, degree: int) -> bool:
 def test_quadratic_colors_are_found_exactly(device: str) -> None:
     """The coefficients are those of the picture, in positions from the upper left corner."""
     mesh = random_mesh(16, 16, 3, seed=4)
-    snapshot = snapshot_of(Device(device), quadratic_picture(16, 16), mesh, QUADRATIC)
+    snapshot = snapshot_of(Device(device, 1), quadratic_picture(16, 16), mesh, QUADRATIC)
     large = snapshot.counts > 20
     assert large.sum() > 3
     # with u = x - 1/2, v = y - 1/2: u^2 + v, 255 - u v - 2 v, v^2 + u
@@ -188,7 +190,7 @@ def test_quadratic_colors_are_found_exactly(device: str) -> None:
 def test_linear_colors_are_found_exactly(device: str) -> None:
     """The coefficients are those of the picture, in positions from the upper left corner."""
     mesh = random_mesh(53, 47, 12, seed=4)
-    snapshot = snapshot_of(Device(device), linear_picture(53, 47), mesh, LINEAR)
+    snapshot = snapshot_of(Device(device, 1), linear_picture(53, 47), mesh, LINEAR)
     large = snapshot.counts > 50
     assert large.sum() > 5
     # pixel (i, j) lies at (i + 1/2, j + 1/2)
@@ -207,11 +209,11 @@ def test_triangle_without_pixels(sums: str, model: ColorModel, device: str) -> N
     points = np.array([[0, 0], [6, 0], [6, 6], [0, 6], [3.1, 3.1], [3.3, 3.1], [3.2, 3.3]])
     mesh = delaunay_mesh(points, 6, 6)
     tiny = int(np.argmin(mesh.areas))
-    snapshot = snapshot_of(Device(device), noise(6, 6), mesh, model)
+    snapshot = snapshot_of(Device(device, 1), noise(6, 6), mesh, model)
     assert snapshot.counts[tiny] == 0
     assert snapshot.energies[tiny] == 0
     assert np.isfinite(snapshot.coefficients).all()
-    energies = poisoned_workspace(Device(device), noise(6, 6), mesh, model, sums).energies()
+    energies = poisoned_workspace(Device(device, 1), noise(6, 6), mesh, model, sums).energies()
     assert energies[tiny, 0] == 0
     assert np.isfinite(energies).all()
 
@@ -226,8 +228,8 @@ def test_pixels_on_a_line_take_the_constant(
     points = np.array([[0, 0], [width, 0], [width, height], [0, height]])
     mesh = mesh_of(points, [[0, 1, 3], [1, 2, 3]], width, height)
     picture = noise(width, height)
-    sloping = snapshot_of(Device(device), picture, mesh, model)
-    constant = snapshot_of(Device(device), picture, mesh, CONSTANT)
+    sloping = snapshot_of(Device(device, 1), picture, mesh, model)
+    constant = snapshot_of(Device(device, 1), picture, mesh, CONSTANT)
     np.testing.assert_array_equal(sloping.coefficients[:, :, 1:], 0.0)
     np.testing.assert_allclose(sloping.coefficients[:, :, 0], constant.coefficients[:, :, 0])
     np.testing.assert_allclose(sloping.energies, constant.energies, rtol=1e-12)
@@ -240,7 +242,7 @@ def test_pixels_on_two_lines_take_the_linear_colour(size: tuple[int, int], devic
     points = np.array([[0, 0], [width, 0], [width, height], [0, height]])
     mesh = mesh_of(points, [[0, 1, 3], [1, 2, 3]], width, height)
     quadratic, linear = (
-        snapshot_of(Device(device), noise(width, height), mesh, model)
+        snapshot_of(Device(device, 1), noise(width, height), mesh, model)
         for model in (QUADRATIC, LINEAR)
     )
     np.testing.assert_array_equal(quadratic.coefficients[:, :, 3:], 0.0)
@@ -263,7 +265,7 @@ def test_far_from_the_middle_sums_wrap_and_fits_do_not(weighted: bool, device: s
     mesh = delaunay_mesh(np.array(points), width, height)
     picture = wide_strip(width, height)
     weights = random_weights(width, height) if weighted else None
-    workspace = poisoned_workspace(Device(device), picture, mesh, QUADRATIC, weights=weights)
+    workspace = poisoned_workspace(Device(device, 1), picture, mesh, QUADRATIC, weights=weights)
     # the edge x = 600 has all of x^4 to its left
     column = np.arange(600, dtype=object) - width // 2
     assert height * (column**4).sum() > 2**63
@@ -286,7 +288,7 @@ def test_triangle_too_large_for_fourth_powers_takes_the_linear_colour(device: st
     points = np.array([[0, 0], [width, 0], [width, height], [0, height]])
     mesh = mesh_of(points, [[0, 1, 3], [1, 2, 3]], width, height)
     quadratic, linear = (
-        snapshot_of(Device(device), wide_strip(width, height), mesh, model)
+        snapshot_of(Device(device, 1), wide_strip(width, height), mesh, model)
         for model in (QUADRATIC, LINEAR)
     )
     np.testing.assert_array_equal(quadratic.coefficients[:, :, 3:], 0.0)
@@ -315,7 +317,7 @@ def test_pixels_on_a_slanted_line_take_the_constant(device: str) -> None:
     above, below = [[0, 1, 4], [1, 6, 4], [1, 5, 6], [1, 2, 5]], [[0, 4, 3], [4, 5, 3], [5, 2, 3]]
     mesh = mesh_of(points, [[4, 6, 5], *above, *below], 40, 40)
     assert_valid(mesh)
-    snapshot = snapshot_of(Device(device), noise(40, 40), mesh, LINEAR)
+    snapshot = snapshot_of(Device(device, 1), noise(40, 40), mesh, LINEAR)
     assert snapshot.counts[0] > 10
     np.testing.assert_array_equal(snapshot.coefficients[0, :, 1:], 0.0)
     assert (snapshot.coefficients[1:, :, 1:] != 0.0).all()
@@ -327,8 +329,8 @@ def test_energies_do_not_depend_on_the_order_of_triangles(model: ColorModel, dev
     picture, mesh = noise(45, 31), random_mesh(45, 31, 60)
     order = np.random.default_rng(5).permutation(mesh.triangle_count)
     shuffled = mesh_of(mesh.vertices, mesh.triangles[order], 45, 31)
-    before = poisoned_workspace(Device(device), picture, mesh, model).energies()
-    after = poisoned_workspace(Device(device), picture, shuffled, model).energies()
+    before = poisoned_workspace(Device(device, 1), picture, mesh, model).energies()
+    after = poisoned_workspace(Device(device, 1), picture, shuffled, model).energies()
     np.testing.assert_array_equal(after, before[order])
 
 
@@ -338,8 +340,10 @@ def test_mirrored_picture_has_the_mirrored_energies(model: ColorModel, device: s
     picture, mesh = noise(45, 31), random_mesh(45, 31, 60)
     flipped = (mesh.vertices - np.array([45, 0])) * (-1, 1)
     mirrored = mesh_of(flipped, mesh.triangles[:, [0, 2, 1]], 45, 31)
-    before = poisoned_workspace(Device(device), picture, mesh, model).energies()
-    after = poisoned_workspace(Device(device), picture[:, ::-1].copy(), mirrored, model).energies()
+    before = poisoned_workspace(Device(device, 1), picture, mesh, model).energies()
+    after = poisoned_workspace(
+        Device(device, 1), picture[:, ::-1].copy(), mirrored, model
+    ).energies()
     order = [0, 2, 1, 3, 4, 10, 9, 11, 12, 6, 5, 7, 8]
     np.testing.assert_allclose(after, before[:, order], atol=ENERGY_TOLERANCE)
 
@@ -352,8 +356,8 @@ def test_shifted_picture_has_the_same_energies(model: ColorModel, device: str) -
     # a displaced corner must stay in the smaller picture
     inside = ((mesh.vertices > 1) & (mesh.vertices < (39, 29))).all(axis=1)
     kept = inside[mesh.triangles].all(axis=1)
-    here = poisoned_workspace(Device(device), larger[7:37, 11:51].copy(), mesh, model).energies()
+    here = poisoned_workspace(Device(device, 1), larger[7:37, 11:51].copy(), mesh, model).energies()
     wide = mesh_of(mesh.vertices + np.array([11, 7]), mesh.triangles, 60, 50)
-    there = poisoned_workspace(Device(device), larger, wide, model).energies()
+    there = poisoned_workspace(Device(device, 1), larger, wide, model).energies()
     tolerance = 0.0 if model is CONSTANT else ENERGY_TOLERANCE
     np.testing.assert_allclose(there[kept], here[kept], rtol=0, atol=tolerance)

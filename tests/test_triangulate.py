@@ -22,7 +22,7 @@ from warp_kernels.device.device import Device
 from warp_kernels.errors import OptionError
 
 WIDTH, HEIGHT = 151, 113
-ITERATIONS = 60
+ITERATIONS = 40
 
 
 def options(
@@ -46,7 +46,7 @@ def triangulated(
     wanted: TriangulateOptions,
     device: str = "cpu",
     *,
-    threads: int = 0,
+    threads: int = 1,
     layout: str = "importance",
 ) -> Snapshot:
     """A picture's snapshot from scratch."""
@@ -100,7 +100,7 @@ def test_more_triangles_leave_less_error(device: str) -> None:
 def test_drawn_model_with_more_terms_is_fitted(device: str) -> None:
     """Constant colours optimised and linear ones drawn: the linear fit is in the snapshot."""
     wanted = options()
-    triangulator = Triangulator(Device(device), (WIDTH, HEIGHT), wanted, drawn=LINEAR)
+    triangulator = Triangulator(Device(device, 1), (WIDTH, HEIGHT), wanted, drawn=LINEAR)
     rng = np.random.default_rng(5)
     snapshot = triangulator.first(frame_of(scene()), LAYOUTS["grid"](), rng)
     plain = triangulated(scene(), wanted, device, layout="grid")
@@ -110,7 +110,9 @@ def test_drawn_model_with_more_terms_is_fitted(device: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "given", [{}, {"space": "oklab"}, {"refine": RefineOptions(quality=60.0)}], ids=str
+    "given",
+    [{}, {"space": "oklab"}, {"refine": RefineOptions(triangles=120, quality=60.0)}],
+    ids=str,
 )
 def test_mesh_does_not_hang_on_what_is_drawn(given: dict, device: str) -> None:
     """Triangles that no one colour becomes are divided whatever colours will be shown there."""
@@ -123,7 +125,7 @@ def test_mesh_does_not_hang_on_what_is_drawn(given: dict, device: str) -> None:
     pictures = [spots, np.roll(spots, 1, axis=1)]
     meshes = []
     for drawn in (None, LINEAR, QUADRATIC):
-        work = Triangulator(Device(device), (WIDTH, HEIGHT), options(60, **given), drawn)
+        work = Triangulator(Device(device, 1), (WIDTH, HEIGHT), options(60, **given), drawn)
         first = work.first(frame_of(pictures[0]), LAYOUTS["grid"](), np.random.default_rng(5))
         later = work.next(frame_of(pictures[1]), standing(first.mesh), first)
         meshes.append((first.mesh, later.mesh))
@@ -147,7 +149,8 @@ def same(first: Snapshot, second: Snapshot) -> bool:
 def test_threads_and_repetition_change_no_bit(color: str, device: str) -> None:
     """One, two and three threads, and once more: the same snapshot."""
     first, *others = (
-        triangulated(scene(), options(color=color), device, threads=n) for n in (1, 2, 3, 1)
+        triangulated(scene(), options(60, color=color, iterations=30), device, threads=n)
+        for n in (1, 2, 3, 1)
     )
     assert all(same(first, other) for other in others)
 
@@ -173,7 +176,7 @@ def test_lower_threshold_takes_more_triangles(device: str) -> None:
     """--error: fewer triangles for a coarser threshold, none above it but the smallest."""
     counts = []
     for error in (0.4, 0.8, 1.6):
-        snapshot = triangulated(scene(), options(4000, error), device)
+        snapshot = triangulated(scene(), options(4000, error, iterations=60), device)
         assert_valid(snapshot.mesh)
         counts.append(snapshot.mesh.triangle_count)
         errors = np.sqrt(snapshot.energies / (WIDTH * HEIGHT))
@@ -189,7 +192,7 @@ def test_count_caps_the_threshold(device: str) -> None:
 
 
 @pytest.mark.parametrize("layout", DRAWN)
-@pytest.mark.parametrize("size", [(1, 1), (2, 1), (1, 5), (3, 2), (7, 5), (2, 300), (300, 2)])
+@pytest.mark.parametrize("size", [(1, 1), (2, 1), (1, 5), (3, 2), (7, 5), (2, 150), (150, 2)])
 def test_tiny_pictures(size: tuple[int, int], layout: str, device: str) -> None:
     """However small the picture, the mesh is valid and every pixel is covered."""
     for color in COLOR_MODELS:
@@ -206,7 +209,9 @@ def test_constant_picture(value: int, layout: str, device: str) -> None:
     """Nothing to approximate: no error, no crash, a valid mesh."""
     picture = np.full((40, 50, 3), value, dtype=np.uint8)
     for color in COLOR_MODELS:
-        snapshot = triangulated(picture, options(50, color=color), device, layout=layout)
+        snapshot = triangulated(
+            picture, options(50, color=color, iterations=20), device, layout=layout
+        )
         assert_valid(snapshot.mesh)
         assert snapshot.rmse < 1e-4
 
@@ -243,7 +248,7 @@ def test_least_number_of_triangles(device: str) -> None:
 def test_no_iteration_is_possible(device: str) -> None:
     """Zero iterations give a valid mesh, first and later."""
     wanted = options(iterations=0, frame_iterations=0)
-    triangulator = Triangulator(Device(device), (WIDTH, HEIGHT), wanted)
+    triangulator = Triangulator(Device(device, 1), (WIDTH, HEIGHT), wanted)
     first = triangulator.first(frame_of(scene()), LAYOUTS["grid"](), np.random.default_rng(0))
     assert_valid(triangulator.next(frame_of(scene(), 1), standing(first.mesh)).mesh)
 
@@ -269,7 +274,7 @@ def test_impossible_options_are_refused(wrong: dict) -> None:
 def test_still_clip_comes_to_rest(topology: str, device: str) -> None:
     """The same picture again and again: vertices stay where they are, and hardly any changes."""
     wanted = options(iterations=300, topology=topology)
-    triangulator = Triangulator(Device(device), (WIDTH, HEIGHT), wanted)
+    triangulator = Triangulator(Device(device, 1), (WIDTH, HEIGHT), wanted)
     rng = np.random.default_rng(1)
     snapshots = [triangulator.first(frame_of(scene()), LAYOUTS["importance"](), rng)]
     for number in range(1, 9):
@@ -287,7 +292,7 @@ def test_still_clip_comes_to_rest(topology: str, device: str) -> None:
 def test_no_triangle_is_too_large_in_later_frames() -> None:
     """A bug of the past: vertices that followed a frame left triangles above the largest area."""
     wanted = options(max_area=300.0)
-    triangulator = Triangulator(Device("cpu"), (WIDTH, HEIGHT), wanted)
+    triangulator = Triangulator(Device("cpu", 1), (WIDTH, HEIGHT), wanted)
     snapshot = triangulator.first(
         frame_of(scene()), LAYOUTS["importance"](), np.random.default_rng(0)
     )
