@@ -76,6 +76,7 @@ def shared_cores() -> Iterator[None]:
     workers = int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1"))
     share = max(1, (os.cpu_count() or 1) // workers)
     with pytest.MonkeyPatch.context() as patch:
+        # real need: the program asks the system how many cores there are
         patch.setattr(os, "cpu_count", lambda: share)
         yield
 

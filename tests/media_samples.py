@@ -78,6 +78,7 @@ def write_video(
         stream.height, stream.width = pictures[0].shape[:2]
         stream.pix_fmt = pixel_format
         stream.codec_context.time_base = time_base
+        stream.codec_context.thread_count = 1  # bits of x264 differ with the number of threads
         if aspect is not None:
             stream.codec_context.sample_aspect_ratio = aspect
         if matrix is not None:

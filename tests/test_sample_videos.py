@@ -123,7 +123,8 @@ def test_sections_of_the_show_begin_where_the_cut_does(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The timeline of the README fits its film, and its sections begin with its parts."""
-    monkeypatch.setattr(cut_to_song, "SIZE", (320, 180))  # times do not depend on it
+    # real need: the script has one size, and its times do not depend on it
+    monkeypatch.setattr(cut_to_song, "SIZE", (320, 180))
     film = tmp_path / "rough.mp4"
     cut_to_song.cut(film)
     words = ["timeline", str(FOLDER / "show.toml"), "--check", str(film)]
