@@ -189,11 +189,11 @@ def run_styles(arguments: argparse.Namespace) -> None:
         arguments: What the user gave.
     """
     if arguments.sheet is None:
-        from pipeline.commands.style_list import list_styles
+        from pipeline.commands.styles.style_list import list_styles
 
         print(list_styles(arguments.picture, as_json=arguments.json))
         return
-    from pipeline.commands.style_sheet import draw_sheet
+    from pipeline.commands.styles.style_sheet import draw_sheet
 
     triangles, overwrite = arguments.triangles, arguments.overwrite
     draw_sheet(arguments.picture, arguments.sheet, triangles=triangles, overwrite=overwrite)

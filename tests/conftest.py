@@ -17,9 +17,11 @@ import warp as wp
 
 from tests.golden_images import compare_with_golden
 from warp_kernels.device.barrier import meet
+from warp_kernels.device.compiling.kernels import compile_early
 from warp_kernels.device.kernel_cache import settle_cache
-from warp_kernels.device.kernels import compile_early
 from warp_kernels.device.runtime import EMULATED, WARP, find_device, quiet
+
+pytest_plugins = ("tests.browser_fixtures",)
 
 GOLDEN_FOLDER = Path(__file__).parent / "golden"
 SEED = 20180806

@@ -2,46 +2,24 @@
 
 import base64
 import os
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 import pytest
 from PIL import Image
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Page, expect
 
 from pipeline.edit_log.journal import EditJournal
 from pipeline.editor.bench.sketch import SIDE, Sketch, drawing_of, keep_drawing
 from stages.hand.regions.texture_region import TextureRegion
-from tests.browsing import find, launched, log_of, opened_page, place, shot, wait_for_edits
-from tests.editing import Served, served, write_job
+from tests.browsing import find, log_of, place, shot, wait_for_edits
+from tests.editing import Served
 from warp_kernels.errors import OptionError
 
 CHANGE = 20
 """By so much one sees that something is drawn [code values]."""
 SHOTS = os.environ.get("TRIMOTION_SHOTS")
 """Where a person wants the pictures of the page that these tests take, or nothing."""
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    """A browser without a window."""
-    with launched() as found:
-        yield found
-
-
-@pytest.fixture(scope="module")
-def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
-    """A server with a still."""
-    with served(write_job(tmp_path_factory.mktemp("job"))) as found:
-        yield found
-
-
-@pytest.fixture
-def page(browser: Browser, server: Served) -> Iterator[Page]:
-    """The page, open, with all edits of earlier tests undone; what it complains of fails."""
-    with opened_page(browser, server) as found:
-        yield found
 
 
 def seen(page: Page, name: str, *others: np.ndarray) -> np.ndarray:

@@ -14,42 +14,19 @@ from tests.browsing import (
     SIZE,
     assert_shows_the_mesh,
     find,
-    launched,
     log_of,
-    opened_page,
     place,
     shot,
     wait_for_edits,
 )
-from tests.editing import Served, served, write_clip_job, write_job
+from tests.editing import Served, served, write_clip_job
 from warp_kernels.styles import STYLES
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    """A browser without a window."""
-    with launched() as found:
-        yield found
-
-
-@pytest.fixture(scope="module")
-def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
-    """A server with a still."""
-    with served(write_job(tmp_path_factory.mktemp("job"))) as found:
-        yield found
 
 
 @pytest.fixture(scope="module")
 def clip_server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
     """A server with a clip of two shots."""
     with served(write_clip_job(tmp_path_factory.mktemp("film"))) as found:
-        yield found
-
-
-@pytest.fixture
-def page(browser: Browser, server: Served) -> Iterator[Page]:
-    """The page, open, with all edits of earlier tests undone; what it complains of fails."""
-    with opened_page(browser, server) as found:
         yield found
 
 

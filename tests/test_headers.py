@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from warp_kernels.device import headers
-from warp_kernels.device.headers import headers_are_read, shared_headers
+from warp_kernels.device.compiling import headers
+from warp_kernels.device.compiling.headers import headers_are_read, shared_headers
 
 
 @pytest.fixture

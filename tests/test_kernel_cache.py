@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from test_encode import ROOT
 
-from warp_kernels.device.whole_kernels import is_whole, remove_broken
+from warp_kernels.device.compiling.whole_kernels import is_whole, remove_broken
 
 SCRIPT = """
 import sys, tempfile

@@ -20,11 +20,11 @@ from stages.triangulate import Triangulator
 from stages.triangulate_options import TriangulateOptions
 from tests.test_encode import ROOT
 from warp_kernels.color_model import CONSTANT, LINEAR
-from warp_kernels.device import kernels as compiling
 from warp_kernels.device.cache_place import is_first_run
+from warp_kernels.device.compiling import kernels as compiling
+from warp_kernels.device.compiling.kernel_turn import PATIENCE, waited_turn
+from warp_kernels.device.compiling.kernels import Kernels
 from warp_kernels.device.device import Device
-from warp_kernels.device.kernel_turn import PATIENCE, waited_turn
-from warp_kernels.device.kernels import Kernels
 from warp_kernels.device.launcher import WarpLauncher
 from warp_kernels.device.runtime import WARP, quiet
 from warp_kernels.styles.flat import Flat

@@ -6,7 +6,7 @@ import warp as wp
 
 from tests.noted_kernels import kernels_of_jobs
 from warp_kernels.color_model import LINEAR
-from warp_kernels.device.stable_names import forget_loop_constants
+from warp_kernels.device.compiling.stable_names import forget_loop_constants
 from warp_kernels.energy import fit
 from warp_kernels.moments.moment_layout import layout_of_moments
 

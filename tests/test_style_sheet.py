@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 
 from pipeline.cli import main
-from pipeline.commands.style_sheet import COLUMNS, OVER, WIDTH, draw_sheet
+from pipeline.commands.styles.style_sheet import COLUMNS, OVER, WIDTH, draw_sheet
 from pipeline.options.members import parse_member
 from stages.look.sheet import CAPTION, GAP, sheet_of
 from stages.moves import MOVES

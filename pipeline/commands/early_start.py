@@ -21,8 +21,8 @@ def _compile(command: str, name: str) -> None:
     """Compile what every such command needs and takes next to nothing to import."""
     with suppress(Exception):
         from warp_kernels.device.barrier import meet
+        from warp_kernels.device.compiling.kernels import compile_early
         from warp_kernels.device.kernel_cache import settle_cache
-        from warp_kernels.device.kernels import compile_early
         from warp_kernels.device.runtime import EMULATED, WARP, find_device, quiet
 
         if name == EMULATED:

@@ -16,7 +16,7 @@ from pipeline.commands.farm.grammar import (
 )
 from pipeline.commands.hearing.grammar import LISTEN_ABOUT, LISTEN_USAGE, add_listen_options
 from pipeline.commands.overview import COMMANDS_HELP
-from pipeline.commands.style_list import registry_help
+from pipeline.commands.styles.style_list import registry_help
 from pipeline.commands.unknown import no_command, unknown_arguments
 from pipeline.options.command_line import add_job_options
 from pipeline.options.values import text_value, whole_number

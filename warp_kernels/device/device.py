@@ -21,8 +21,8 @@ import warp as wp
 
 from warp_kernels.device.barrier import STRIDE, meet
 from warp_kernels.device.card_memory import memory_problem
+from warp_kernels.device.compiling.kernels import Told, tell_nobody
 from warp_kernels.device.kernel_cache import settle_cache
-from warp_kernels.device.kernels import Told, tell_nobody
 from warp_kernels.device.launcher import Launcher, WarpLauncher
 from warp_kernels.device.phase import SMALLEST_PART, Phase
 from warp_kernels.device.runtime import EMULATED, WARP, find_device, unused_card

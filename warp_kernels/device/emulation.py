@@ -21,7 +21,7 @@ from typing import Any
 import warp as wp
 from warp._src.context import ModuleBuilder, _build_launch_bounds_from_tuple, pack_arg
 
-from warp_kernels.device.kernels import CUDA_BLOCK as BLOCK
+from warp_kernels.device.compiling.kernels import CUDA_BLOCK as BLOCK
 from warp_kernels.device.launcher import Graph
 from warp_kernels.device.runtime import EMULATED, WARP, quiet
 from warp_kernels.errors import OptionError

@@ -5,7 +5,7 @@ from typing import Any, Protocol
 
 import warp as wp
 
-from warp_kernels.device.kernels import Kernels, Told, block_of
+from warp_kernels.device.compiling.kernels import Kernels, Told, block_of
 from warp_kernels.device.runtime import WARP, quiet
 
 Graph = Callable[[], None]

@@ -15,10 +15,10 @@ from typing import Any
 
 import warp as wp
 
-from warp_kernels.device.headers import headers_are_read, shared_headers
-from warp_kernels.device.kernel_turn import waited_turn
-from warp_kernels.device.stable_names import forget_loop_constants
-from warp_kernels.device.whole_kernels import remove_broken
+from warp_kernels.device.compiling.headers import headers_are_read, shared_headers
+from warp_kernels.device.compiling.kernel_turn import waited_turn
+from warp_kernels.device.compiling.stable_names import forget_loop_constants
+from warp_kernels.device.compiling.whole_kernels import remove_broken
 
 MOST_COMPILERS = 8
 """Threads that compile."""

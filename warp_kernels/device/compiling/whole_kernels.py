@@ -5,7 +5,7 @@ import struct
 from collections.abc import Callable, Iterable
 from pathlib import Path
 
-from warp_kernels.device.kernel_turn import waited_turn
+from warp_kernels.device.compiling.kernel_turn import waited_turn
 
 ELF = b"\x7fELF\x02"
 """How an object file of Linux with 64 bits begins."""

@@ -41,7 +41,7 @@ ONE = FrameRange(0, 0)
 """A sheet shows the first frame."""
 OVER = " + "
 """Written between the styles of a stack, the lower one first."""
-SAMPLE = Path(__file__).parents[2] / "sample_videos" / "astronaut.jpg"
+SAMPLE = Path(__file__).parents[3] / "sample_videos" / "astronaut.jpg"
 """The portrait, unless another picture is named."""
 
 
