@@ -186,7 +186,8 @@ class _Report(Progress):
         if task is None or task.state != "executing":
             raise UnwantedError
         self._untold.append((triangles, rmse))
-        if monotonic() - self._told > OFTEN:
+        # the last one at once: whoever finds the shot finished tells of none of its frames
+        if done == total or monotonic() - self._told > OFTEN:
             self.send()
 
     def send(self) -> None:
