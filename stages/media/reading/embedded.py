@@ -4,8 +4,9 @@ import base64
 import binascii
 from functools import lru_cache
 
-import cv2
+import av
 import numpy as np
+from av.video.codeccontext import VideoCodecContext
 
 from warp_kernels.errors import OptionError
 
@@ -59,9 +60,12 @@ def read_embedded(text: str) -> np.ndarray:
     size = [int.from_bytes(content[at : at + 4], "big") for at in (16, 20)]
     if not content.startswith(_BEGIN) or not all(0 < side <= MOST_ACROSS for side in size):
         raise problem
-    found = cv2.imdecode(np.frombuffer(content, np.uint8), cv2.IMREAD_COLOR)
-    if found is None:
-        raise problem
-    pixels = np.ascontiguousarray(found[..., ::-1])
+    try:
+        context = av.CodecContext.create("png", "r")
+        assert isinstance(context, VideoCodecContext)
+        (frame,) = [*context.decode(av.Packet(content)), *context.decode(None)]
+        pixels = frame.to_ndarray(format="rgb24")
+    except (av.FFmpegError, ValueError) as error:
+        raise problem from error
     pixels.flags.writeable = False
     return pixels
