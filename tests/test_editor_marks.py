@@ -13,7 +13,7 @@ from pipeline.edit_log.journal import EditJournal
 from pipeline.editor.bench.sketch import SIDE, Sketch, drawing_of, embedded_drawing, keep_drawing
 from stages.hand.regions.texture_region import TextureRegion
 from stages.masks.gray import read_gray
-from stages.media.reading.embedded import read_embedded
+from stages.media.embedded import read_embedded
 from tests.browsing import find, log_of, place, shot, wait_for_edits
 from tests.editing import Served
 from warp_kernels.errors import OptionError

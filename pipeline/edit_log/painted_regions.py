@@ -12,7 +12,7 @@ from stages.hand.regions.style_region import StyleRegion
 from stages.hand.regions.texture_region import TextureRegion
 from stages.masks.gray import read_gray
 from stages.masks.region import Region
-from stages.media.reading.embedded import is_embedded
+from stages.media.embedded import is_embedded
 from warp_kernels.errors import MediaError, OptionError
 from warp_kernels.styles import STYLES, Style
 from warp_kernels.styles.texture import Texture

@@ -3,7 +3,7 @@
 import numpy as np
 
 from stages.media import open_decoder
-from stages.media.reading.embedded import is_embedded, read_embedded
+from stages.media.embedded import is_embedded, read_embedded
 
 LUMA = (0.2126, 0.7152, 0.0722)
 """Weights of red, green and blue in grey, as BT.709 has them."""

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from stages.media.reading.embedded import embedded
+from stages.media.embedded import embedded
 from stages.media.writing.commit import write_file
 from stages.media.writing.still_writer import encode_still
 from warp_kernels.errors import OptionError
