@@ -2,6 +2,7 @@
 # make test    run every test          make lint    ruff, mypy, and tsc for the editor's page
 # make clean   remove what these made
 # make cuda-check  what can be known of CUDA without a card (needs g++; takes some minutes)
+# make cuda-kernels  its first part: every kernel compiles for cards (no g++; 80 s on two cores)
 #
 # Needs only Python 3.11 or newer and make; everything is installed into .venv.
 
@@ -18,7 +19,7 @@ SOURCES := $(shell find warp_kernels stages pipeline -name '*.py' -o -name '*.to
 
 CARD_TESTS := tests tests/card_emulated.py
 
-.PHONY: demo test lint cuda-check clean
+.PHONY: demo test lint cuda-kernels cuda-check clean
 .DELETE_ON_ERROR:
 
 demo: $(DEMO_SHEET)
@@ -26,7 +27,7 @@ demo: $(DEMO_SHEET)
 	@echo "contact sheet: $(DEMO_SHEET)"
 
 # Tests start hundreds of processes: each would compile all modules if byte code were not kept.
-test cuda-check: export PYTHONDONTWRITEBYTECODE :=
+test cuda-kernels cuda-check: export PYTHONDONTWRITEBYTECODE :=
 
 test: $(VENV)/.installed-dev
 	@$(BIN)/python -m pytest --numprocesses=logical --maxprocesses=4 --dist=worksteal
@@ -38,8 +39,10 @@ lint: $(VENV)/.installed-dev $(TSC)
 	@$(BIN)/mypy --strict --follow-imports=silent tests/client_of_trimotion.py
 	@$(BIN)/node $(TSC) --project pipeline/editor/page/jsconfig.json
 
-cuda-check: $(VENV)/.installed-dev
+cuda-kernels: $(VENV)/.installed-dev
 	@$(BIN)/python -m benchmarks.card_compile
+
+cuda-check: cuda-kernels
 	@$(BIN)/python -m pytest --emulated $(CARD_TESTS) \
 		--numprocesses=logical --maxprocesses=4 --dist=worksteal
 
