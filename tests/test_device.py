@@ -165,6 +165,20 @@ def test_interrupt_while_capturing_leaves_a_device_that_works(device: str) -> No
     assert (runner.read(visits, 500) == 1).all()
 
 
+def test_what_was_captured_is_not_captured_again(device: str) -> None:
+    """However many sizes came between: a limit had thrown away what the next frame needed."""
+    runner = Device(device, 2)
+    phase, _ = counting(runner, 700)
+    for size in (*range(600, 0, -4), 600):
+        phase.resize(size)
+        runner.run([phase])
+    known = len(phase.sequences)
+    for size in range(600, 0, -4):
+        phase.resize(size)
+        runner.run([phase])
+    assert len(phase.sequences) == known > 1
+
+
 def test_two_threads_may_use_one_device(device: str) -> None:
     """The one that solves and the one that draws do not wait for each other for ever."""
     runner = Device(device, 2)

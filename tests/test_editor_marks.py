@@ -10,8 +10,10 @@ from PIL import Image
 from playwright.sync_api import Page, expect
 
 from pipeline.edit_log.journal import EditJournal
-from pipeline.editor.bench.sketch import SIDE, Sketch, drawing_of, keep_drawing
+from pipeline.editor.bench.sketch import SIDE, Sketch, drawing_of, embedded_drawing, keep_drawing
 from stages.hand.regions.texture_region import TextureRegion
+from stages.masks.gray import read_gray
+from stages.media.embedded import read_embedded
 from tests.browsing import find, log_of, place, shot, wait_for_edits
 from tests.editing import Served
 from warp_kernels.errors import OptionError
@@ -96,11 +98,36 @@ def test_a_texture_is_drawn_seen_and_given_to_a_region(page: Page, server: Serve
     with EditJournal(server.studio.session.path) as journal:
         (edit,) = journal.log.edits
     assert isinstance(edit, TextureRegion)
-    assert Path(edit.file).parent == server.studio.session.path.parent
-    assert np.asarray(Image.open(edit.file).convert("L")).shape == (SIDE, SIDE)
+    assert read_embedded(edit.file).shape == (SIDE, SIDE, 3)
     page.keyboard.press("Control+z")
     wait_for_edits(page, 0)
     assert np.abs(seen(page, "undone", here) - plain)[inside].max() <= CHANGE
+
+
+def test_a_texture_is_drawn_by_keys_and_seen_over_regions(page: Page, server: Served) -> None:
+    """Arrows lead the pen; what is drawn lies over regions that have a texture already."""
+    hide_mesh(page)
+    page.locator("#texture-panel summary").click()
+    page.locator("#set-texture-name").select_option("cushion")
+    page.locator("#set-region").select_option("texture")
+    drag_around(page, REGION)
+    wait_for_edits(page, 1)
+    page.locator("#set-texture-name").select_option("drawn here")
+    page.locator("#texture-clear").click()
+    page.mouse.move(5, 5)
+    painted = seen(page, "before_the_pen")
+    page.locator("#texture").focus()
+    for key in ("Enter", *["ArrowDown"] * 12, *["ArrowRight"] * 6, "Enter", "ArrowUp"):
+        page.keyboard.press(key)
+    found = seen(page, "pen_by_keys", painted)
+    inside = around(page, 48, 32)
+    assert np.abs(found[inside] - painted[inside]).max() > CHANGE
+    dark = page.evaluate(
+        "() => [...document.querySelector('#texture').getContext('2d')"
+        ".getImageData(128, 180, 1, 1).data]"
+    )
+    assert dark[0] < 64
+    assert log_of(server) == ["texture_region"]
 
 
 def test_a_texture_is_painted_and_laid_over_the_film(page: Page, server: Served) -> None:
@@ -178,6 +205,11 @@ def test_a_drawing_is_kept_once(tmp_path: Path) -> None:
     assert keep_drawing(drawing, tmp_path / "job.mtrk") == kept
     assert keep_drawing(drawing[::-1], tmp_path / "job.mtrk") != kept
     gray = np.asarray(Image.open(kept).convert("L"))
+    inside = embedded_drawing(drawing)
+    assert np.array_equal(read_gray(inside), read_gray(str(kept)))
+    for broken in (inside[:60], inside[:-9] + "*", inside.replace("iVBOR", "AAAAA")):
+        with pytest.raises(OptionError, match="no PNG"):
+            read_gray(broken)
     assert gray.tobytes() == drawing
     read = Sketch(file=str(kept)).texture(lambda _: gray / 255.0)
     drawn = Sketch(file="drawing", drawing=drawing).texture(lambda _: np.empty(0))

@@ -12,6 +12,7 @@ from stages.hand.regions.style_region import StyleRegion
 from stages.hand.regions.texture_region import TextureRegion
 from stages.masks.gray import read_gray
 from stages.masks.region import Region
+from stages.media.embedded import is_embedded
 from warp_kernels.errors import MediaError, OptionError
 from warp_kernels.styles import STYLES, Style
 from warp_kernels.styles.texture import Texture
@@ -90,7 +91,8 @@ def _style_of(edit: StyleRegion | TextureRegion) -> Style:
         MediaError: If a picture cannot be read.
     """
     named = edit.style if isinstance(edit, StyleRegion) else edit.file
-    if not named.isprintable() or len(named) > LONGEST:
+    is_name = isinstance(edit, StyleRegion) or not is_embedded(named)
+    if is_name and (not named.isprintable() or len(named) > LONGEST):
         raise OptionError(f"{reprlib.repr(named)} names nothing; give what --style takes")
     style: Style
     if isinstance(edit, StyleRegion):

@@ -31,6 +31,8 @@ class Phase:
     ) -> None:
         self.parts = tuple(parts)
         self.flows_on = flows_on
+        self.sequences: dict[Any, Any] = {}
+        """What teams captured that begins with this phase, by what they know it by."""
         self.shape = self._launch_sizes()
         self._size: tuple[int, int, int | None] = (0, 0, None)
         self._set_span = set_span

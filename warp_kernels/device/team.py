@@ -14,8 +14,6 @@ from warp_kernels.device.runtime import WARP
 
 PART = "trimotion-part"
 """Name of the threads."""
-MOST_GRAPHS = 64
-"""Captured sequences kept: a much larger mesh needs a new one."""
 
 
 class Team:
@@ -31,7 +29,6 @@ class Team:
         self._size = size
         self._launcher = launcher
         self._flags = flags
-        self._graphs: dict[Any, Any] = {}
         self._job: tuple[list[Any], int] = ([], 0)
         self._meetings: list[Any] = []
         self._abandoned = False
@@ -90,15 +87,16 @@ class Team:
             thread.join()
 
     def _graphs_of(self, phases: Sequence[Phase]) -> list[Graph]:
-        key = tuple((id(phase), phase.shape) for phase in phases)
-        if key not in self._graphs:
+        """What the threads replay; kept by the first phase, for as long as that is kept."""
+        first, *others = phases
+        key = (self, first.shape, *((id(phase), phase.shape) for phase in others))
+        if key not in first.sequences:
             if self._size > 1 and not self._meetings:
                 self._meetings = self._recorded_meetings()
-            if len(self._graphs) >= MOST_GRAPHS:
-                self._graphs.clear()
             graphs = [self._capture(phases, number) for number in range(self._size)]
-            self._graphs[key] = (graphs, tuple(phases))  # the phases must outlive their ids
-        return self._graphs[key][0]
+            first.sequences[key] = (graphs, others)  # they must outlive their ids
+        graphs, _ = first.sequences[key]
+        return graphs
 
     def _recorded_meetings(self) -> list[Any]:
         """The launch with which each thread waits for the others."""

@@ -10,6 +10,9 @@ from warp_kernels.styles.style import ReadPicture, Style
 if TYPE_CHECKING:
     from warp_kernels.scene.texels import Texels
 
+LONGEST = 300
+"""Names of files that are longer are not told whole: they hold the picture itself."""
+
 
 @dataclass(frozen=True)
 class Texture(Style):
@@ -52,4 +55,5 @@ class Texture(Style):
             return Texels.of(read(self.file)[None]).with_neighbours(repeats=False)
         except TrimotionError as error:
             known = ", ".join(PICTURES)
-            raise OptionError(f"texture:{self.file}: {error}; or choose from {known}") from error
+            name = self.file if len(self.file) < LONGEST else f"{self.file[:24]}..."
+            raise OptionError(f"texture:{name}: {error}; or choose from {known}") from error

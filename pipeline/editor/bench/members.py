@@ -9,9 +9,13 @@ from pipeline.look.region_masks import own_mask
 from pipeline.look.region_members import MEMBER
 from pipeline.options.look import Look
 from pipeline.options.solve_options import SolveOptions
+from stages.masks.area import Area
 from stages.masks.region import Region
 from stages.motion.inherit_regions import under_mask
 from stages.snapshot import Snapshot
+
+EVERYWHERE = Area(radius=np.inf)
+"""All triangles of all frames: nobody can point at it."""
 
 
 class Members:
@@ -48,6 +52,8 @@ class Members:
     ) -> np.ndarray:
         """Whether triangles belong to one region, [T] bool."""
         mesh = snapshot.mesh
+        if region.areas == (EVERYWHERE,):
+            return np.ones(mesh.triangle_count, dtype=bool)
         if is_edited and frame in region.frames:
             return under_mask(mesh, own_mask(region, frame, (mesh.width, mesh.height)))
         if region not in self._known:

@@ -2,7 +2,7 @@
 
 from collections import OrderedDict
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 from pathlib import Path
 from typing import Any
@@ -14,7 +14,7 @@ from pipeline.edit_log.painted_regions import check_style, painted_regions
 from pipeline.editor.bench.easel import MOST_ACROSS, Easel
 from pipeline.editor.bench.film import SolvedFilm
 from pipeline.editor.bench.live import Descent, Live
-from pipeline.editor.bench.members import Members
+from pipeline.editor.bench.members import EVERYWHERE, Members
 from pipeline.editor.bench.pictures import Pictures
 from pipeline.editor.bench.replays import Replays
 from pipeline.options.edit_log import EditLog
@@ -24,12 +24,14 @@ from pipeline.options.solve_options import SolveOptions
 from stages.frame import Frame
 from stages.hand import Edit
 from stages.hand.worked import Worked
+from stages.masks.region import Region
 from stages.media.writing.commit import write_file
 from stages.media.writing.still_writer import encode_still
 from stages.snapshot import Snapshot
 from warp_kernels.color_model import ColorModel
 from warp_kernels.device.device import Device
 from warp_kernels.errors import EditError, OutputError
+from warp_kernels.styles import Style
 
 ANYWHERE = Run()
 """Any device, all cores."""
@@ -178,8 +180,25 @@ class Session:
         Returns:
             See `Easel.prepare`.
         """
-        look = painted_regions(self.log, self.film.frames).over(look)
+        look = self._painted(look)
         return self.easel.prepare(look, look.fitted(self.easel.model), across)
+
+    def under(self, look: Look, style: Style) -> Look:
+        """A look with a style over all that there is, regions that edits painted among it.
+
+        Args:
+            look: The look.
+            style: The style.
+        """
+        painted = self._painted(look)
+        if not painted.regions:
+            return replace(look, styles=(*look.shown_styles(self.easel.model), style))
+        everywhere = Region("everywhere", style, (self.film.frames[0],), (EVERYWHERE,))
+        return replace(painted, regions=(*painted.regions, everywhere))
+
+    def _painted(self, look: Look) -> Look:
+        """A look with the regions that edits gave a style."""
+        return painted_regions(self.log, self.film.frames).over(look)
 
     def compile_expected(self) -> None:
         """Compile what `prepare` found missing; in any thread, beside all else."""
@@ -199,7 +218,7 @@ class Session:
         Raises:
             EditError: If the track holds no such frame.
         """
-        look = painted_regions(self.log, self.film.frames).over(look)
+        look = self._painted(look)
         model = look.fitted(self.easel.model)
         if view == LIVE and self.live is not None and self.live.frame.index == frame:
             snapshot = self.easel.fitted(self.live.frame, self.live.worked, model)

@@ -1,4 +1,4 @@
-"""Textures that are drawn on the page: shown at once, and kept beside the track for good."""
+"""Textures that are drawn on the page: shown at once, and kept for good."""
 
 import base64
 import binascii
@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
+from stages.media.embedded import embedded
 from stages.media.writing.commit import write_file
 from stages.media.writing.still_writer import encode_still
 from warp_kernels.errors import OptionError
@@ -61,10 +62,19 @@ def drawing_of(text: str) -> bytes:
     return drawing
 
 
+def embedded_drawing(drawing: bytes) -> str:
+    """A drawing as edits hold it themselves, so that it goes wherever the log goes.
+
+    Args:
+        drawing: Code values, row by row.
+    """
+    return embedded(_png(drawing))
+
+
 def keep_drawing(drawing: bytes, track: Path) -> Path:
     """Write a drawing beside a track; the same drawing is the same file.
 
-    An edit names it, so it is never written over: undo shows the drawing of the edit before.
+    A style names it, so it is never written over.
 
     Args:
         drawing: Code values, row by row.
@@ -79,9 +89,13 @@ def keep_drawing(drawing: bytes, track: Path) -> Path:
     digest = hashlib.sha256(drawing).hexdigest()[:10]
     path = track.absolute().with_name(f"{track.stem}.texture-{digest}.png")
     if not path.exists():
-        gray = _gray(drawing)
-        write_file(path, encode_still(np.repeat(gray[:, :, None], 3, axis=2), "png", None))
+        write_file(path, _png(drawing))
     return path
+
+
+def _png(drawing: bytes) -> bytes:
+    """The content of a PNG."""
+    return encode_still(np.repeat(_gray(drawing)[:, :, None], 3, axis=2), "png", None)
 
 
 def _gray(drawing: bytes) -> np.ndarray:

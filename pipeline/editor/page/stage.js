@@ -1,8 +1,9 @@
 import { carriedOn, Mesh } from "./mesh/mesh.js";
 import { pick } from "./mesh/pick.js";
 import { Ghosts } from "./tools/ghosts.js";
+import { Hand } from "./tools/hand.js";
 import { Marks } from "./tools/marks.js";
-import { editOf, planned } from "./tools/plans.js";
+import { planned } from "./tools/plans.js";
 import { Player } from "./time/player.js";
 import { Camera } from "./view/camera.js";
 import { Overlay } from "./view/overlay.js";
@@ -60,6 +61,7 @@ export class Stage {
     this.player = new Player(this);
     this.marks = new Marks(this);
     this.ghosts = new Ghosts(this);
+    this.hand = new Hand(this);
     this.isLooking = false;
     this.isLookWanted = false;
     /** @type {Mesh | null} */
@@ -352,56 +354,6 @@ export class Stage {
       }
     });
     return this.edits;
-  }
-
-  /**
-   * Do what a click does.
-   * @param {"left" | "right"} button
-   */
-  click(button) {
-    const picked = this.picked();
-    if (!this.mesh || !this.pointer) return;
-    if (this.tool === "paint") this.marks.dab();
-    else if (this.tool === "region") this.marks.corner();
-    else if (this.tool === "brush") {
-      this.make(this.stroke(this.pointer, button === "right" || this.shift));
-    } else if (picked && this.tool === "pin") {
-      const plan = button === "right" || this.isHeld(picked) ? "unlock" : "lock";
-      if (picked.kind !== "face") this.make(editOf(this.mesh, picked, plan));
-    } else if (picked && this.tool === "edit") {
-      const plan = planned(picked, button, this.shift);
-      if (plan && plan !== "move_vertex") this.make(editOf(this.mesh, picked, plan));
-    }
-  }
-
-  /**
-   * Do something to the nearest of a kind.
-   * @param {"vertex" | "edge"} kind
-   * @param {string} plan
-   */
-  act(kind, plan) {
-    if (!this.mesh || !this.pointer) return;
-    const picked = pick(this.mesh, this.pointer, this.camera.zoom, kind);
-    if (picked) this.make(editOf(this.mesh, picked, plan));
-  }
-
-  /** Take up the vertex at the pointer. */
-  grab() {
-    if (!this.mesh || !this.pointer) return;
-    const picked = pick(this.mesh, this.pointer, this.camera.zoom, "vertex");
-    if (picked?.kind === "vertex") this.moving = { vertex: picked.vertex, from: picked.at, to: picked.at };
-    this.repaint();
-  }
-
-  /** Put the vertex that was taken up where it is now. */
-  drop() {
-    const { moving } = this;
-    this.moving = null;
-    if (moving && (moving.to.x !== moving.from.x || moving.to.y !== moving.from.y)) {
-      const { from, to } = moving;
-      this.make({ edit: "move_vertex", at: [from.x, from.y], to: [to.x, to.y] });
-    }
-    this.repaint();
   }
 
   /** Let go of what was begun. */

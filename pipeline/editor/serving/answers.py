@@ -10,7 +10,7 @@ from pipeline.editor.bench.easel import MOST_ACROSS, look_of
 from pipeline.editor.bench.errands import beside
 from pipeline.editor.bench.long_work import Applying, Rendering
 from pipeline.editor.bench.session import LIVE, VIEWS
-from pipeline.editor.bench.sketch import Sketch, drawing_of, keep_drawing
+from pipeline.editor.bench.sketch import Sketch, drawing_of, embedded_drawing, keep_drawing
 from pipeline.editor.wire.asked import Asked, AskError
 from pipeline.editor.wire.packed import packed_pixels
 from stages.hand import Edit
@@ -137,8 +137,10 @@ async def sketch(window: "Window", asked: Asked) -> Reply:
 
 
 async def keep(window: "Window", asked: Asked) -> Reply:
-    """Write a texture that was drawn beside the track, for edits and styles to name."""
+    """A texture that was drawn, for edits as a text that holds it, for styles as a file."""
     drawing = drawing_of(asked.text("drawing"))
+    if asked.text("for", "edits") == "edits":
+        return {"file": await window.studio.do(embedded_drawing, drawing)}
     track = window.studio.session.path
     return {"file": str(await window.studio.do(keep_drawing, drawing, track))}
 

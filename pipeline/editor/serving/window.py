@@ -4,7 +4,6 @@ import asyncio
 import json
 from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import replace
 from time import monotonic
 from typing import Any
 
@@ -109,17 +108,17 @@ class Window:
             across: Widest picture [px].
         """
         frame, look = self.frame, self.look
+        session = self.studio.session
         if self.sketch is not None:
-            styles = look.shown_styles(self.studio.session.easel.model)
-            look = replace(look, styles=(*styles, self.sketch))
-        if await self.studio.do(self.studio.session.prepare, look, across):
+            look = await self.studio.do(session.under, look, self.sketch)
+        if await self.studio.do(session.prepare, look, across):
             if at_once:
                 self.want_drawn()
                 return
             self.tell({"tell": "preparing", "is": True})
             await self.studio.compile_expected()
             self.tell({"tell": "preparing", "is": False})
-        drawn = await self.studio.do(self.studio.session.drawn, frame, look, self.view, across)
+        drawn = await self.studio.do(session.drawn, frame, look, self.view, across)
         self.show("drawn", packed_pixels({"kind": "drawn", "frame": frame}, drawn))
 
     def optimise(self, course: Mapping[str, float], steps: int) -> None:

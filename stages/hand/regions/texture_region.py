@@ -14,7 +14,8 @@ class TextureRegion(OnRegion):
     """
 
     file: str
-    """A picture whose lower edge is the base edge, or cushion, or triangle."""
+    """A picture whose lower edge is the base edge, or cushion, or triangle. A picture is a file,
+    or a text that holds it and goes wherever the edit goes, see `stages.media.embedded`."""
     strength: float = 1.0
     """Contrast of the picture, 0 to 4."""
     opacity: float = 1.0

@@ -1,3 +1,4 @@
+import { PenByKeys } from "./pen.js";
 import { choice, help, slider } from "./rows.js";
 
 /** @typedef {import("../stage.js").Stage} Stage */
@@ -23,14 +24,15 @@ export class TexturePanel {
     this.isShown = false;
     this.isSending = false;
     this.isWanted = false;
-    /** @type {Promise<string> | null} the file of the drawing as it is now */
+    /** @type {Promise<string> | null} the drawing as it is now, as edits hold it */
     this.kept = null;
     /** @type {{x: number, y: number} | null} */
     this.last = null;
     this.canvas = document.createElement("canvas");
     Object.assign(this.canvas, { id: "texture", width: SIDE, height: SIDE });
-    this.canvas.setAttribute("role", "img");
-    this.canvas.setAttribute("aria-label", "Drawing of the texture; a picture can be loaded in its place");
+    this.canvas.tabIndex = 0;
+    this.canvas.setAttribute("role", "application");
+    this.canvas.setAttribute("aria-label", "Drawing of the texture. Arrows move the pen (Shift: by a pixel), Space or Enter puts it down and lifts it; a picture can be loaded in its place");
     this.context = /** @type {CanvasRenderingContext2D} */ (this.canvas.getContext("2d", { willReadFrequently: true }));
     this.context.lineCap = this.context.lineJoin = "round";
     this.element = document.createElement("details");
@@ -40,7 +42,8 @@ export class TexturePanel {
     this.canvas.addEventListener("pointerdown", (event) => this.down(event));
     this.canvas.addEventListener("pointermove", (event) => this.move(event));
     for (const name of ["pointerup", "pointercancel"]) this.canvas.addEventListener(name, () => (this.last = null));
-    stage.marks.texture = () => this.told();
+    stage.marks.texture = () => this.told("edits");
+    new PenByKeys(this.canvas, SIDE, (to) => this.stroke(to), () => (this.last = null));
   }
 
   rows() {
@@ -203,12 +206,17 @@ export class TexturePanel {
     return btoa(text);
   }
 
-  /** The texture as edits name it; a drawing is kept beside the track first. */
-  async told() {
+  /**
+   * The texture as it is named.
+   * @param {"edits" | "styles"} by edits hold a drawing themselves, styles name a file beside the track
+   */
+  async told(by) {
     const { name, strength, opacity } = this.values;
     if (this.isShown) this.setShown(false); // what is painted shall be seen
     if (name !== DRAWN) return { file: name, strength, opacity };
-    this.kept ??= this.stage.connection.ask("keep", { drawing: this.base64() }).then(({ file }) => file);
+    const keep = () => this.stage.connection.ask("keep", { drawing: this.base64(), for: by }).then(({ file }) => file);
+    if (by === "styles") return { file: await keep(), strength, opacity };
+    this.kept ??= keep();
     try {
       return { file: await this.kept, strength, opacity };
     } catch (error) {
@@ -219,7 +227,7 @@ export class TexturePanel {
 
   async lay() {
     try {
-      this.style.lay("texture", await this.told());
+      this.style.lay("texture", await this.told("styles"));
     } catch (error) {
       this.stage.told.problem(/** @type {Error} */ (error).message);
     }

@@ -25,10 +25,10 @@ export class Keyboard {
       v: () => stage.setMode("vertex"),
       e: () => stage.setMode("edge"),
       f: () => stage.setMode("face"),
-      g: () => stage.grab(),
-      x: () => stage.act("vertex", "collapse_vertex"),
-      Delete: () => stage.act("vertex", "collapse_vertex"),
-      j: () => stage.act("edge", "flip_edge"),
+      g: () => stage.hand.grab(),
+      x: () => stage.hand.act("vertex", "collapse_vertex"),
+      Delete: () => stage.hand.act("vertex", "collapse_vertex"),
+      j: () => stage.hand.act("edge", "flip_edge"),
       o: () => stage.setBrush({ spread: stage.brush.spread === "normal" ? "uniform" : "normal" }),
       "[": () => stage.setBrush({ radius: Math.round(stage.brush.radius / 1.15) }),
       "]": () => stage.setBrush({ radius: Math.round(stage.brush.radius * 1.15) + 1 }),
@@ -36,7 +36,7 @@ export class Keyboard {
       "+": () => this.zoom(1.25),
       "=": () => this.zoom(1.25),
       "-": () => this.zoom(0.8),
-      Enter: () => stage.click("left"),
+      Enter: () => stage.hand.click("left"),
       Escape: () => stage.letGo(),
       "?": () => help.showModal(),
       " ": () => stage.togglePlay(),
@@ -89,7 +89,7 @@ export class Keyboard {
   pin() {
     const { stage } = this;
     const picked = stage.picked();
-    if (stage.tool === "pin" && picked) stage.click("left");
+    if (stage.tool === "pin" && picked) stage.hand.click("left");
     else stage.setTool("pin");
   }
 
@@ -128,7 +128,7 @@ export class Keyboard {
   type(event) {
     const { stage } = this;
     if (event.key === "Enter") {
-      stage.drop();
+      stage.hand.drop();
       this.typed = "";
     } else if (event.key === "Escape") {
       stage.letGo();

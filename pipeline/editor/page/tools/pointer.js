@@ -54,7 +54,7 @@ export class Pointer {
       return;
     }
     if (stage.moving) {
-      stage.drop();
+      stage.hand.drop();
       return;
     }
     this.press = { at, last: at, button: event.button, isDragged: false, isFirst: true, kind: this.kind(event) };
@@ -78,7 +78,7 @@ export class Pointer {
     if (this.press && !this.press.isDragged && this.press.kind !== "region") {
       this.press = null;
       this.stage.letGo();
-      this.stage.click("right");
+      this.stage.hand.click("right");
     }
   }
 
@@ -113,7 +113,7 @@ export class Pointer {
       clearTimeout(this.longTimer);
       if (press.kind === "move") {
         stage.pointer = stage.camera.toPicture(press.at);
-        stage.grab();
+        stage.hand.grab();
       }
     }
     if (!press.isDragged) return;
@@ -152,7 +152,7 @@ export class Pointer {
     if (press.isDragged && away < stage.brush.radius) return;
     press.at = at;
     stage.pointer = stage.camera.toPicture(at);
-    stage.click(press.button === 2 ? "right" : "left");
+    stage.hand.click(press.button === 2 ? "right" : "left");
   }
 
   /** @param {PointerEvent} event */
@@ -163,10 +163,10 @@ export class Pointer {
     this.press = null;
     if (!press) return;
     stage.shift = event.shiftKey;
-    if (press.kind === "move" && press.isDragged) stage.drop();
+    if (press.kind === "move" && press.isDragged) stage.hand.drop();
     else if (press.kind === "region") this.outline(press.isDragged, press.isFirst);
     else if ((press.kind === "click" || press.kind === "move") && !press.isDragged) {
-      stage.click(press.button === 2 ? "right" : "left");
+      stage.hand.click(press.button === 2 ? "right" : "left");
     }
     stage.repaint();
   }
