@@ -18,6 +18,7 @@ from typing import Any, NoReturn
 from pipeline.commands.crash_watch import watch_for_crashes
 from pipeline.commands.grammar import build_parser
 from pipeline.commands.inputs import inputs_of, joined, take
+from pipeline.kept_memory import keep_memory
 from pipeline.printable import one_line, printable
 
 INTERRUPTED = 130
@@ -51,6 +52,8 @@ def main(argv: Sequence[str] | None = None, commands: "Mapping[str, Command] | N
     except SystemExit as request:
         return request.code if isinstance(request.code, int) else 2
     try:
+        if argv is None:
+            keep_memory()
         with _terminable(), _piped(arguments):
             if commands is None:
                 _say_at_once(arguments)

@@ -18,7 +18,7 @@ from pipeline.track.packing.compact import (
     unpack_places,
 )
 from pipeline.track.packing.plain import unpack_rows
-from pipeline.track.packing.topologies import unpack_topology
+from pipeline.track.packing.topologies import Topologies
 from pipeline.track.schema import (
     ENDING,
     LAST,
@@ -66,6 +66,7 @@ class TrackReader:
     def __init__(self, path: Path) -> None:
         self.path = path
         self._connection = open_existing(path)
+        self._topologies = Topologies(self._connection)
         try:
             with reading(path):
                 self.header: Header = read_header(path, self._connection)
@@ -181,7 +182,7 @@ class TrackReader:
     ) -> Mesh:
         """The triangles of a frame, checked before more is unpacked."""
         with reading(self.path):
-            found = unpack_topology(self._connection, topology, V, T)
+            found = self._topologies.unpack(topology, V, T)
         mesh = Mesh(
             width=self.header.info.width,
             height=self.header.info.height,

@@ -76,7 +76,7 @@ def shades(mesh: Mesh, model: ColorModel, coefficients: np.ndarray) -> np.ndarra
     terms = np.ascontiguousarray(coefficients.transpose(2, 1, 0))
     if model.degree == 0:
         return np.rint(terms * SHADES) + 0.0  # no zero has a sign
-    x, y = mesh.corner_columns()
+    x, y = mesh.corner_columns
     if model.degree == 2:
         x, y = (np.concatenate([n, 0.5 * (n + n[[1, 2, 0]])]) for n in (x, y))
     powers = {(1, 0): x, (0, 1): y, (2, 0): x * x, (1, 1): x * y, (0, 2): y * y}
@@ -150,7 +150,7 @@ class Nodes:
     def __init__(self, mesh: Mesh, model: ColorModel) -> None:
         self._degree = model.degree
         if model.degree:
-            x, y = mesh.corner_columns()
+            x, y = mesh.corner_columns
             self._origin = x[0], y[0]
             self._frame = _frame(x, y)
 
