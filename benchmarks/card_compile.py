@@ -1,8 +1,8 @@
 """Compile every kernel that a job can launch for cards, without one, and print what each takes.
 
-NVRTC comes with Warp. The oldest supported card gets PTX, in which every operation of the solver
-must be rounded as the standard says, each on its own; the newer one gets machine code, which says
-how many registers and how much local memory a thread takes. `--write` keeps these figures as those
+NVRTC comes with Warp. The oldest supported card gets PTX, in which every operation must be rounded
+as the standard says, each on its own; the newer one gets machine code, which says how many
+registers and how much local memory a thread takes. `--write` keeps these figures as those
 of a release; without it kernels that take more than they did are told.
 
     python -m benchmarks.card_compile [--only WORD] [--write]
@@ -29,7 +29,9 @@ from tests.noted_kernels import kernels_of_card
 OLDEST, NEWER = 75, 90
 """Compute capabilities."""
 RECORD = Path(__file__).parents[1] / "docs" / "results" / "card_kernels.csv"
-ARITHMETIC = re.compile(r"\b(?:add|sub|mul|fma|mad|div|sqrt|rcp|rsqrt|ex2|lg2)\.[\w.]*f(?:32|64)\b")
+ARITHMETIC = re.compile(
+    r"\b(?:add|sub|mul|fma|mad|div|sqrt|rcp|rsqrt|ex2|lg2|sin|cos|tanh)\.[\w.]*f(?:32|64)\b"
+)
 """Instructions that compute in floating point."""
 ROUNDED = re.compile(r"(?:mul|div|sqrt|rcp)\.rn\.f(?:32|64)|(?:add|sub)(?:\.rn)?\.f(?:32|64)")
 """Those that round as the standard says, each on its own."""
@@ -91,19 +93,13 @@ def _compile(number: int) -> Compiled:
                 )
                 for arch in (OLDEST, NEWER)
             )
-            if _is_exact(kernel):
-                odd = set(ARITHMETIC.findall(ptx.read_text(encoding="utf-8")))
-                odd = {operation for operation in odd if not ROUNDED.fullmatch(operation)}
-                problem = f"rounds otherwise: {', '.join(sorted(odd))}" if odd else ""
+            odd = set(ARITHMETIC.findall(ptx.read_text(encoding="utf-8")))
+            odd = {operation for operation in odd if not ROUNDED.fullmatch(operation)}
+            problem = f"rounds otherwise: {', '.join(sorted(odd))}" if odd else ""
             registers, local = usage_of(code.read_bytes(), kernel.key)
         except Exception as error:  # whatever the compiler says is the finding
             problem = f"{type(error).__name__}: {error}"
     return Compiled(_name(kernel), registers, local, time.perf_counter() - begin, problem)
-
-
-def _is_exact(kernel: Any) -> bool:
-    """Whether the bits of meshes depend on it."""
-    return kernel.func.__module__.startswith(("warp_kernels.energy.", "warp_kernels.moments."))
 
 
 def _name(kernel: Any) -> str:

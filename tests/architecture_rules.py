@@ -81,6 +81,12 @@ UNLOCKED = frozenset({"replay", "_seen_by_host"})
 """Functions of those files that need no lock of their own: the first runs on a team's threads, for
 the caller who holds it and waits for them; the second looks at the host's memory."""
 
+LIBRARY_FUNCTIONS = frozenset(
+    {"exp", "log", "log2", "log10", "pow", "cbrt", "erf", "sin", "cos", "tan"}
+    | {"asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh"}
+)
+"""Names of `wp` that the C library and CUDA's round otherwise than each other."""
+
 FORBIDDEN_STEMS = frozenset({"utils", "util", "helpers", "helper", "manager", "common", "misc"})
 MAX_FILE_LINES = 400
 MAX_LINE_LENGTH = 100
@@ -264,6 +270,19 @@ def kernels_of_their_own_module_are_exact(module: Module) -> Iterator[Finding]:
                 yield kernel.lineno, f"{kernel.name} has no module_options; give it EXACT"
 
 
+def kernels_call_no_library_of_functions(module: Module) -> Iterator[Finding]:
+    """Kernels take logarithms, powers and angles from `elementary`, whose bits are the same."""
+    for node in module.nodes:
+        if isinstance(node, ast.Attribute) and _warp_name(node) in LIBRARY_FUNCTIONS:
+            yield node.lineno, f"wp.{node.attr} has other bits on other devices"
+    for function in module.functions():
+        if _is_kernel(function) or _has_decorator(function, "func"):
+            for node in ast.walk(function):
+                is_power = isinstance(getattr(node, "op", None), ast.Pow)
+                if is_power and not _in_static(function, node):
+                    yield node.lineno, "a power has other bits on other devices"
+
+
 def modules_have_docstrings(module: Module) -> Iterator[Finding]:
     """Every file that holds something starts with what it is for."""
     if module.source.strip() and not ast.get_docstring(module.tree):
@@ -325,6 +344,7 @@ RULES: tuple[Callable[[Module], Iterator[Finding]], ...] = (
     memory_is_allocated_in_one_place,
     warp_is_called_under_its_lock,
     kernels_of_their_own_module_are_exact,
+    kernels_call_no_library_of_functions,
     modules_have_docstrings,
     public_names_have_docstrings,
     functions_are_short,
@@ -387,6 +407,17 @@ def _calls_warp(call: ast.Call) -> bool:
         )
     name = call.func.attr if isinstance(call.func, ast.Attribute) else ""
     return name in ARRAY_CALLS and not _warp_name(call.func)
+
+
+def _in_static(function: FunctionNode, sought: ast.AST) -> bool:
+    """Say whether a part of a kernel is computed in Python, when the kernel is made."""
+    statics = (n for n in ast.walk(function) if isinstance(n, ast.Call))
+    return any(
+        sought is inner
+        for call in statics
+        if _warp_name(call.func) == "static"
+        for inner in ast.walk(call)
+    )
 
 
 def _written_arrays(kernel: FunctionNode) -> Iterator[Finding]:

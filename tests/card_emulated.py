@@ -37,8 +37,6 @@ from warp_kernels.styles import STYLES
 SIZE = (61, 47)
 """Of the pictures [px]."""
 FRAMES = 10
-INEXACT: dict[str, int] = {}
-"""Styles that may differ, by how many code values; none does here, where both libraries are one."""
 
 
 def on(device: str, model: str, sums: str, *, weighted: bool) -> Workspace:
@@ -105,8 +103,7 @@ def test_clips(style: str, device: str, tmp_path: Path) -> None:
     """Solved and drawn, with triangles that fade in."""
     look = {"styles": (STYLES["paper"](), STYLES[style](opacity=0.75)), "blend": 4}
     expected, actual = (film(tmp_path, name, **look) for name in ("cpu", device))
-    off = np.abs(actual.astype(int) - expected).max()
-    assert off <= INEXACT.get(style, 0)
+    np.testing.assert_array_equal(actual, expected)
 
 
 def test_two_threads_share_a_card(device: str) -> None:

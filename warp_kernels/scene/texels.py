@@ -6,6 +6,7 @@ from typing import Literal
 import numpy as np
 import warp as wp
 
+from warp_kernels.elementary import binary_log
 from warp_kernels.scene.scene import Scene, StyleParameters
 
 wp.set_module_options({"enable_backward": False, "fuse_fp": False})
@@ -141,7 +142,7 @@ def detail_for(scene: Scene, parameters: StyleParameters, footprint: float) -> f
     table = level_of(scene, parameters.first_level)
     texels = footprint * float(wp.max(table[2], columns_of(table)))
     last = float(parameters.level_count - 1)
-    return wp.clamp(wp.log2(wp.max(texels, 1.0e-6)), 0.0, last)
+    return wp.clamp(binary_log(wp.max(texels, 1.0e-6)), 0.0, last)
 
 
 @wp.func

@@ -2,6 +2,7 @@
 
 import warp as wp
 
+from warp_kernels.elementary import exponential, natural_log
 from warp_kernels.scene.scene import (
     Ink,
     Sample,
@@ -30,16 +31,16 @@ def depth_in_chain(p: wp.vec2f, corner: wp.vec2f, radius: float, smallest: float
         smallest: Radius below which discs are left out [px].
     """
     reach = wp.max(wp.length(corner), 1.0e-6)
-    sine = wp.min(radius / reach, 0.999)
-    factor = (1.0 - sine) / (1.0 + sine)
-    towards = corner / reach
-    along = wp.dot(p, towards)
+    along = wp.dot(p, corner) / reach
     if along <= radius:
         return radius - wp.length(p)  # beside the incircle at most: most points are
     left = wp.max(reach - along, 1.0e-6)
-    # between two discs the border lies where they touch: at (1 - sine) of the nearer one's way
-    number = wp.ceil(wp.log(left / (reach * (1.0 + sine))) / wp.log(factor)) - 1.0
-    size = wp.pow(factor, wp.max(number, 0.0))
+    # between two discs the border lies where they touch: at reach - radius of the nearer one's way
+    inner = wp.min(radius, 0.999 * reach)
+    whole = reach + inner
+    shrinking = natural_log((reach - inner) / whole)
+    number = wp.ceil(natural_log(left / whole) / shrinking) - 1.0
+    size = exponential(wp.max(number, 0.0) * shrinking)
     own = radius * size
     if own < smallest and number > 0.0:
         return -own

@@ -2,6 +2,7 @@
 
 import warp as wp
 
+from warp_kernels.elementary import half_angle
 from warp_kernels.scene.scene import (
     Ink,
     Numbers,
@@ -72,8 +73,7 @@ def prepare_texture(scene: Scene, parameters: StyleParameters, triangle: int) ->
     steep = wp.sqrt(0.5 * (along + down) + spread)
     flat = wp.sqrt(wp.max(0.5 * (along + down) - spread, 0.0))
     looks = wp.clamp(wp.ceil(0.5 * steep / wp.max(flat, 1.0e-9)), 1.0, float(MOST_LOOKS))
-    turn = 0.5 * wp.atan2(2.0 * both, along - down)
-    step = (scene.pixel / looks) * wp.vec2f(wp.cos(turn), wp.sin(turn))
+    step = (scene.pixel / looks) * half_angle(along - down, 2.0 * both)
     result[DETAIL] = detail_for(scene, parameters, steep * scene.pixel / looks)
     result[LOOKS] = looks
     result[STEP] = -wp.dot(left, step)
