@@ -7,6 +7,7 @@ import io
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -22,6 +23,10 @@ ARGUMENTS = ["--no-sandbox", "--enable-unsafe-swiftshader"]
 SIZE = {"width": 1000, "height": 640}
 PATIENCE = 60_000
 """A machine may be busy with other tests [ms]."""
+SHOTS = os.environ.get("TRIMOTION_SHOTS")
+"""Where a person wants the pictures of the page that these tests take, or nothing."""
+SETTLED = 500
+"""By then what was drawn anew has come [ms]."""
 expect.set_options(timeout=PATIENCE)
 
 
@@ -133,3 +138,28 @@ def shot(page: Page) -> np.ndarray:
         "() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))"
     )
     return np.asarray(Image.open(io.BytesIO(page.screenshot())).convert("RGB")).astype(int)
+
+
+def keep(name: str, found: np.ndarray) -> None:
+    """Save what a page showed, where a person wants to judge it.
+
+    Args:
+        name: Name of the file, without its ending.
+        found: What `shot` returned.
+    """
+    if SHOTS:
+        Path(SHOTS).mkdir(parents=True, exist_ok=True)
+        Image.fromarray(found.astype(np.uint8)).save(Path(SHOTS) / f"{name}.png")
+
+
+def keep_page(page: Page, name: str) -> None:
+    """Save what the page shows once it is drawn, where a person wants to judge it.
+
+    Args:
+        page: The page.
+        name: Name of the file, without its ending.
+    """
+    if SHOTS:
+        expect(page.locator("#preparing")).to_be_hidden()
+        page.wait_for_timeout(SETTLED)
+        keep(name, shot(page))

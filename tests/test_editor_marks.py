@@ -1,7 +1,6 @@
 """What the editor's page gives to parts of the picture: textures, styles, focus, pins."""
 
 import base64
-import os
 from pathlib import Path
 
 import numpy as np
@@ -14,14 +13,12 @@ from pipeline.editor.bench.sketch import SIDE, Sketch, drawing_of, embedded_draw
 from stages.hand.regions.texture_region import TextureRegion
 from stages.masks.gray import read_gray
 from stages.media.embedded import read_embedded
-from tests.browsing import find, log_of, place, shot, wait_for_edits
+from tests.browsing import find, keep, keep_page, log_of, place, shot, wait_for_edits
 from tests.editing import Served
 from warp_kernels.errors import OptionError
 
 CHANGE = 20
 """By so much one sees that something is drawn [code values]."""
-SHOTS = os.environ.get("TRIMOTION_SHOTS")
-"""Where a person wants the pictures of the page that these tests take, or nothing."""
 
 
 def seen(page: Page, name: str, *others: np.ndarray) -> np.ndarray:
@@ -36,8 +33,7 @@ def seen(page: Page, name: str, *others: np.ndarray) -> np.ndarray:
         if all(np.abs(found[rows, columns] - other).max() > CHANGE for other in others):
             break
         page.wait_for_timeout(50)
-    if SHOTS:
-        Image.fromarray(found.astype(np.uint8)).save(Path(SHOTS) / f"{name}.png")
+    keep(name, found)
     return found[rows, columns]
 
 
@@ -104,6 +100,26 @@ def test_a_texture_is_drawn_seen_and_given_to_a_region(page: Page, server: Serve
     assert np.abs(seen(page, "undone", here) - plain)[inside].max() <= CHANGE
 
 
+def test_a_texture_turns_with_the_base_edge(page: Page, server: Served) -> None:
+    """Shift and a click: what lay along one edge of the triangle lies along another."""
+    hide_mesh(page)
+    plain = seen(page, "turn_plain")
+    page.locator("#texture-panel summary").click()
+    scribble(page)
+    before = seen(page, "turn_before", plain)
+    face = find(page, "face")
+    page.keyboard.down("Shift")
+    page.mouse.click(*place(page, *face))
+    page.keyboard.up("Shift")
+    wait_for_edits(page, 1)
+    assert log_of(server) == ["turn_base_edge"]
+    page.mouse.move(5, 5)
+    after = seen(page, "turn_done", before)
+    inside, outside = around(page, *face), around(page, 5, 5)
+    assert np.abs(after[inside] - before[inside]).max() > CHANGE
+    assert np.abs(after[outside] - before[outside]).max() <= CHANGE
+
+
 def test_a_texture_is_drawn_by_keys_and_seen_over_regions(page: Page, server: Served) -> None:
     """Arrows lead the pen; what is drawn lies over regions that have a texture already."""
     hide_mesh(page)
@@ -165,9 +181,9 @@ def test_a_region_gets_what_the_panel_says(page: Page, server: Served) -> None:
         drag_around(page, REGION)
         wait_for_edits(page, count)
         assert log_of(server)[-1] == kind
+        keep_page(page, f"region_{what.replace(' ', '_')}")
         if what == "lock vertices":
             page.wait_for_function(f"() => ({held})() > 0")
-            seen(page, "pinned_region")
         if what == "unlock vertices":
             page.wait_for_function(f"() => ({held})() === 0")
 
@@ -195,6 +211,7 @@ def test_focus_is_painted(page: Page, server: Served) -> None:
     page.mouse.click(*place(page, *find(page, "face")))
     wait_for_edits(page, 1)
     assert log_of(server) == ["set_focus"]
+    keep_page(page, "focus_painted")
 
 
 def test_a_drawing_is_kept_once(tmp_path: Path) -> None:

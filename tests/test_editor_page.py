@@ -14,6 +14,7 @@ from tests.browsing import (
     SIZE,
     assert_shows_the_mesh,
     find,
+    keep_page,
     log_of,
     place,
     shot,
@@ -43,19 +44,24 @@ def test_the_mouse_of_the_paper(page: Page, server: Served) -> None:
     """Each click is one edit of the log, shown, undone and done again."""
     for count, (what, button, modifiers, kind) in enumerate(CLICKS, start=1):
         x, y = place(page, *find(page, what))
+        page.mouse.move(x, y)
         page.keyboard.down("Shift") if modifiers else None
+        keep_page(page, f"{count}_{kind}_before")
         page.mouse.click(x, y, button=button)
         page.keyboard.up("Shift") if modifiers else None
         wait_for_edits(page, count)
         assert log_of(server)[-1] == kind
         assert_shows_the_mesh(page, server)
+        keep_page(page, f"{count}_{kind}_done")
     page.keyboard.press("Control+z")
     wait_for_edits(page, 4)
+    keep_page(page, "6_undone")
     page.locator("#undo").click()
     wait_for_edits(page, 3)
     page.keyboard.press("Control+Shift+z")
     wait_for_edits(page, 4)
     assert log_of(server) == [kind for *_, kind in CLICKS[:4]]
+    keep_page(page, "7_undone_twice_and_done_again")
     assert_shows_the_mesh(page, server)
 
 
@@ -65,10 +71,13 @@ def test_a_vertex_is_dragged_and_typed(page: Page, server: Served) -> None:
     (left, top), (right, bottom) = place(page, x, y), place(page, x + 2, y + 1)
     page.mouse.move(left, top)
     page.mouse.down()
+    keep_page(page, "move_before")
     page.mouse.move((left + right) / 2, (top + bottom) / 2)
     page.mouse.move(right, bottom)
+    keep_page(page, "move_on_the_way")
     page.mouse.up()
     wait_for_edits(page, 1)
+    keep_page(page, "move_done")
     with EditJournal(server.studio.session.path) as journal:
         (moved,) = journal.log.edits
     assert np.allclose(np.array(moved.to) - moved.at, (2, 1), atol=1e-6)  # type: ignore[attr-defined]
@@ -92,27 +101,35 @@ def test_the_brush_shows_what_it_does(page: Page, server: Served) -> None:
     page.mouse.move(*place(page, 48, 32))
     page.wait_for_function("() => trimotion.ghost?.fresh.length > 0")
     ghost = page.evaluate("() => trimotion.ghost.fresh.map(p => [p.x, p.y])")
+    keep_page(page, "brush_preview")
     page.mouse.click(*place(page, 48, 32))
     wait_for_edits(page, 1)
+    keep_page(page, "brush_inserted")
     mesh = server.studio.session.worked(0).mesh
     assert {tuple(at) for at in ghost} <= {tuple(at) for at in mesh.vertices.tolist()}
     page.mouse.click(*place(page, 48, 32), button="right")
     wait_for_edits(page, 2)
+    keep_page(page, "brush_removed")
     assert log_of(server) == ["insert", "remove"]
     page.mouse.wheel(0, -240)
     page.wait_for_function("() => trimotion.brush.radius > 15")
     page.keyboard.press("o")
     expect(page.locator("#set-spread")).to_have_value("normal")
+    page.mouse.move(*place(page, 50, 30))
+    keep_page(page, "brush_preview_normal")
 
 
 def test_a_region_is_triangulated_anew_and_pinned(page: Page, server: Served) -> None:
     page.keyboard.press("r")
+    keep_page(page, "retriangulate_before")
     page.mouse.move(*place(page, 20, 15))
     page.mouse.down()
     for x, y in ((75, 15), (75, 50), (20, 50)):
         page.mouse.move(*place(page, x, y))
+    keep_page(page, "retriangulate_drawn")
     page.mouse.up()
     wait_for_edits(page, 1)
+    keep_page(page, "retriangulate_done")
     page.keyboard.press("a")
     page.mouse.move(*place(page, *find(page, "vertex")))
     page.keyboard.press("p")
@@ -120,6 +137,7 @@ def test_a_region_is_triangulated_anew_and_pinned(page: Page, server: Served) ->
     wait_for_edits(page, 2)
     assert log_of(server)[0] == "retriangulate"
     assert log_of(server)[1] in ("lock", "unlock")
+    keep_page(page, "pinned")
 
 
 def test_what_cannot_be_done_is_told_in_one_line(page: Page, server: Served) -> None:
@@ -231,11 +249,13 @@ def test_the_optimiser_is_watched(page: Page, server: Served) -> None:
     expect(page.locator("#optimise")).to_have_text("Pause")
     page.locator("#optimise").click()
     expect(page.locator("#optimise")).to_have_text("Play")
+    keep_page(page, "optimised")
     page.wait_for_timeout(500)
     before = page.locator("#optimiser-told").inner_text()
     page.keyboard.press(";")
     expect(page.locator("#optimiser-told")).not_to_have_text(before)
     page.locator("#set-errors").fill("1")
+    keep_page(page, "errors_shown")
 
 
 def test_edits_are_made_while_the_optimiser_runs(page: Page, server: Served) -> None:
@@ -272,6 +292,7 @@ def test_a_style_is_painted_onto_triangles(page: Page, server: Served) -> None:
     page.mouse.click(*place(page, 48, 32))
     wait_for_edits(page, 1)
     assert log_of(server) == ["style_region"]
+    keep_page(page, "style_painted")
 
 
 def test_time_and_the_way_through_a_shot(browser: Browser, clip_server: Served) -> None:
