@@ -1,18 +1,19 @@
 """Measure coherence over whole clips, at their own size, on pairs of frames spread over them.
 
     python benchmarks/whole_clips.py CLIP ... [--every N] [--triangles N] [--keep FOLDER]
-                                     [--option=--NAME=VALUE ...]
+                                     [--focus none|auto] [--option=--NAME=VALUE ...]
 
 A clip is converted from its first frame to its last, with the defaults and what `--option` says.
 Of every Nth frame and the one after it the drawn pictures are compared with those of independent
-frames (`--independent --focus none`), which are made of these pairs alone:
+frames (`--independent`), which are made of these pairs alone. Both have the same `--focus`, for
+one gives up error of the whole picture for that of faces, whether frames are followed or not:
 
     E_warp    mean of the pairs [1e-3], and that of the independent frames divided by it
     rmse      mean over the frames of the pairs, beside that of the independent frames
 
 `--keep` has the independent pictures stay in a folder, and takes those that lie there: they are by
-far the most work. Everything is called by the command line's `main`, so an older version can be
-measured with PYTHONPATH.
+far the most work, and stay those of the version that made them. Another version can be measured
+with PYTHONPATH if it has the modules that are imported here; 0.1.0 lacks `SourceMotion`.
 """
 
 import argparse
@@ -29,6 +30,7 @@ from stages.media import FrameRange, open_decoder
 from stages.metrics.motion import SourceMotion
 from stages.metrics.warp_error import warp_error
 
+FOCUS = "--focus"
 HEADS = ("clip", "pairs", "E_warp [1e-3]", "independent", "calmer", "rmse", "beside independent")
 
 
@@ -108,25 +110,26 @@ def measured(pairs: list[Pair], pattern: Path, motions: list[SourceMotion]) -> F
     return Figures(1e3 * float(np.mean(warps)), float(np.mean(errors)))
 
 
-def independent(clip: Path, pairs: list[Pair], pattern: Path, triangles: int) -> None:
+def independent(clip: Path, pairs: list[Pair], pattern: Path, *options: str) -> None:
     """Make those independent pictures of pairs that are not there yet."""
     for pair in pairs:
         try:
             read(pattern, pair.number + 1)
         except FileNotFoundError:
             span = f"--frames={pair.number}-{pair.number + 1}"
-            wanted = f"--triangles={triangles}"
-            convert(clip, pattern, "--independent", "--focus=none", "--cuts=none", span, wanted)
+            convert(clip, pattern, "--independent", "--cuts=none", span, *options)
 
 
 def row(clip: Path, options: argparse.Namespace, folder: Path) -> tuple[str, ...]:
     """What the table says about a clip."""
     pairs = pairs_of(clip, options.every)
     motions = [SourceMotion.between(pair.earlier, pair.later) for pair in pairs]
-    kept = (options.keep or folder) / f"{clip.stem}_{options.triangles}" / "frame_######.png"
-    independent(clip, pairs, kept, options.triangles)
+    name = f"{clip.stem}_{options.triangles}" + ("" if options.focus == "none" else "_focus")
+    kept = (options.keep or folder) / name / "frame_######.png"
+    shared = (f"--triangles={options.triangles}", f"{FOCUS}={options.focus}")
+    independent(clip, pairs, kept, *shared)
     drawn = folder / clip.stem / "frame_######.png"
-    convert(clip, drawn, f"--triangles={options.triangles}", *options.option)
+    convert(clip, drawn, *shared, *options.option)
     own, other = measured(pairs, drawn, motions), measured(pairs, kept, motions)
     return (
         clip.name,
@@ -146,8 +149,11 @@ def main() -> None:
     parser.add_argument("--every", type=int, default=14, help="frames from one pair to the next")
     parser.add_argument("--triangles", type=int, default=1500)
     parser.add_argument("--keep", type=Path, help="folder of the independent pictures")
+    parser.add_argument(FOCUS, choices=("none", "auto"), default="none", help="of both sides")
     parser.add_argument("--option", action="append", default=[], help="for the conversion")
     options = parser.parse_args()
+    if any(option.startswith(FOCUS) for option in options.option):
+        parser.error(f"--option={FOCUS}=...: say {FOCUS} itself, which both sides get")
     rows = []
     for clip in options.clips:
         with TemporaryDirectory() as name:
