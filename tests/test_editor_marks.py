@@ -22,17 +22,20 @@ CHANGE = 20
 
 
 def seen(page: Page, name: str, *others: np.ndarray) -> np.ndarray:
-    """The picture's part of the page; waited for until it differs from others."""
+    """The picture's part of the page; waited for until it differs from others and stays."""
     box = page.locator("#stage").bounding_box()
     assert box is not None
     rows = slice(int(box["y"]), int(box["y"] + box["height"]))
     columns = slice(int(box["x"]), int(box["x"] + box["width"]))
+    last = None
     for _ in range(300):
         expect(page.locator("#preparing")).to_be_hidden()
         found = shot(page)
-        if all(np.abs(found[rows, columns] - other).max() > CHANGE for other in others):
+        stays = last is not None and np.abs(found - last)[rows, columns].max() <= CHANGE
+        if stays and all(np.abs(found[rows, columns] - other).max() > CHANGE for other in others):
             break
-        page.wait_for_timeout(50)
+        last = found
+        page.wait_for_timeout(50 if others else 250)
     keep(name, found)
     return found[rows, columns]
 
