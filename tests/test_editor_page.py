@@ -295,6 +295,43 @@ def test_a_style_is_painted_onto_triangles(page: Page, server: Served) -> None:
     keep_page(page, "style_painted")
 
 
+def test_a_painted_style_is_set_as_styles_are(page: Page, server: Served) -> None:
+    """The same form as in the style panel; another style begins as it usually is."""
+    page.keyboard.press("t")
+    page.locator("#set-paint").select_option("edges")
+    page.locator("#set-paint-width").fill("3.5")
+    keep_page(page, "painted_style_form")
+    page.mouse.click(*place(page, 48, 32))
+    wait_for_edits(page, 1)
+    page.locator("#set-paint").select_option("hatching")
+    page.locator("#set-paint").select_option("edges")
+    page.mouse.click(*place(page, 48, 32))
+    wait_for_edits(page, 2)
+    with EditJournal(server.studio.session.path) as journal:
+        assert [edit.style for edit in journal.log.edits] == ["edges:width=3.5", "edges"]  # type: ignore[attr-defined]
+    keep_page(page, "painted_style_set")
+
+
+def test_a_small_window_shows_all_words(page: Page) -> None:
+    """The header is one line, and nothing of the hint or the figures is cut off."""
+    cut = """() => [...document.querySelectorAll("#hint, #facts, #saved, header, footer")]
+        .filter(e => e.scrollWidth > e.clientWidth + 1 && e.clientWidth
+            || e.scrollHeight > e.clientHeight + 1 && e.clientHeight).map(e => e.id || e.tagName)"""
+    for width, height in ((1000, 640), (700, 420)):
+        page.set_viewport_size({"width": width, "height": height})
+        for key in "abrtp":
+            page.keyboard.press(key)
+            page.mouse.move(*place(page, 48, 32))
+            shot(page)
+            assert page.evaluate(cut) == []
+            keep_page(page, f"window_{width}_{key}")
+        heights = page.evaluate(
+            "() => [...document.querySelectorAll('header > :not(.spring)')]"
+            ".map(e => e.getBoundingClientRect()).filter(b => b.height).map(b => b.bottom)"
+        )
+        assert max(heights) < 46
+
+
 def test_time_and_the_way_through_a_shot(browser: Browser, clip_server: Served) -> None:
     """Seek, edit, apply, compare, play and render: all that one does with a film."""
     page = browser.new_page(viewport=SIZE)
@@ -322,5 +359,6 @@ def test_time_and_the_way_through_a_shot(browser: Browser, clip_server: Served) 
     page.wait_for_function("() => !trimotion.isPlaying && trimotion.frame === 11")
     page.locator("#render").click()
     expect(page.locator("#written")).to_contain_text(".mp4")
+    expect(page.locator("#written")).to_contain_text(f"{clip_server.studio.session.path.parent}/")
     assert len(list(clip_server.studio.session.path.parent.glob("clip.2*.mp4"))) == 1
     page.close()

@@ -253,6 +253,16 @@ def test_two_windows_see_one_job(server: Served) -> None:
         assert ask(other, "undo") == {"re": 1, "frame": 0}
 
 
+def test_what_is_written_is_told_with_its_folder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Even if the job was opened by its name alone: who looks for a file asks where."""
+    write_job(tmp_path)
+    monkeypatch.chdir(tmp_path)  # real need: a track is named from where one stands
+    with served(Path("job.mtrk")) as server, connect(server.socket_url) as window:
+        assert ask(window, "export", name="one.png")["path"] == str(tmp_path / "one.png")
+
+
 def test_edits_do_not_wait_for_kernels_of_a_style(
     server: Served, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -82,7 +82,7 @@ async def render_film(window: "Window", asked: Asked) -> Reply:
     session = window.studio.session
     output = beside(session.path, asked.text("name"))
     window.studio.begin(Rendering(session, window.look, output))
-    return {"path": str(output)}
+    return {"path": str(output.resolve())}
 
 
 async def cancel(window: "Window", asked: Asked) -> Reply:
@@ -96,7 +96,7 @@ async def export(window: "Window", asked: Asked) -> Reply:
     session = window.studio.session
     output = beside(session.path, asked.text("name"))
     await window.studio.do(session.export, window.frame, window.look, output, window.view)
-    return {"path": str(output)}
+    return {"path": str(output.resolve())}
 
 
 async def optimise(window: "Window", asked: Asked) -> Reply:

@@ -1,15 +1,11 @@
-import { choice, help, section, slider } from "./rows.js";
+import { section } from "./rows.js";
+import { specOf, styleForm } from "./style_form.js";
 
 /**
  * @typedef {import("../stage.js").Stage} Stage
- * @typedef {{name: string, kind: string, default: any, help?: string, unit?: string, range?: [number, number],
- *   choices?: string[], form?: string}} Parameter
- * @typedef {Record<string, {summary: string, parameters: Parameter[]}>} Styles
+ * @typedef {Record<string, import("./style_form.js").Style>} Styles
  * @typedef {{name: string, values: Record<string, any>, isOpen: boolean}} Layer
  */
-
-/** Parameters that one looks for first stand first; these every style has. */
-const SHARED = ["opacity", "blend"];
 
 /** Styles over one another, as the registry tells of them. */
 export class StylePanel {
@@ -62,7 +58,7 @@ export class StylePanel {
 
   /** The stack as the command line takes it, bottom to top. */
   get specs() {
-    return this.layers.map(specOf).reverse();
+    return this.layers.map(({ name, values }) => specOf(name, values)).reverse();
   }
 
   changed() {
@@ -122,7 +118,7 @@ export class StylePanel {
     });
     head.append(open, away);
     row.append(head);
-    if (layer.isOpen) row.append(...this.parameters(layer));
+    if (layer.isOpen) row.append(...styleForm(this.styles[layer.name], layer.values, "style", () => this.send()));
     row.addEventListener("dragstart", (event) => event.dataTransfer?.setData("text/plain", String(place)));
     row.addEventListener("dragover", (event) => event.preventDefault());
     row.addEventListener("drop", (event) => {
@@ -142,77 +138,4 @@ export class StylePanel {
     this.layers.splice(to, 0, layer);
     this.changed();
   }
-
-  /** @param {Layer} layer */
-  parameters(layer) {
-    const told = this.styles[layer.name];
-    const own = told.parameters.filter(({ name }) => !SHARED.includes(name));
-    const shared = told.parameters.filter(({ name }) => SHARED.includes(name));
-    return [help(told.summary), ...[...own, ...shared].map((one) => this.parameter(layer, one))];
-  }
-
-  /**
-   * @param {Layer} layer
-   * @param {Parameter} told
-   */
-  parameter(layer, told) {
-    const value = layer.values[told.name] ?? told.default ?? "";
-    const title = `${told.help ?? ""}${told.unit ? ` [${told.unit}]` : ""}, usually ${told.default}`;
-    const name = `style-${told.name}`;
-    /** @param {any} next */
-    const changed = (next) => {
-      layer.values[told.name] = next;
-      this.send();
-    };
-    if (told.choices) return choice({ name, label: told.name, title, choices: told.choices, value, changed }).row;
-    if (told.range && (told.kind === "float" || told.kind === "int")) {
-      const [least, most] = told.range;
-      const step = told.kind === "int" ? 1 : niceStep(most - least);
-      return slider({ name, label: told.name, title, least, most, step, value, changed }).row;
-    }
-    return this.text(told, name, title, String(value), changed);
-  }
-
-  /**
-   * @param {Parameter} told
-   * @param {string} name
-   * @param {string} title
-   * @param {string} value
-   * @param {(value: string) => void} changed
-   */
-  text(told, name, title, value, changed) {
-    const row = document.createElement("div");
-    row.className = "row";
-    row.title = title;
-    const label = document.createElement("label");
-    label.htmlFor = `set-${name}`;
-    label.textContent = told.name;
-    const input = document.createElement("input");
-    Object.assign(input, { id: `set-${name}`, type: "text", value });
-    input.addEventListener("change", () => changed(input.value));
-    row.append(label, input);
-    if (/^#([0-9a-f]{3}){1,2}$/i.test(value)) {
-      const color = document.createElement("input");
-      const six = value.length === 4 ? value.replace(/[^#]/g, "$&$&") : value;
-      Object.assign(color, { type: "color", value: six });
-      color.setAttribute("aria-label", `${told.name}, as a colour`);
-      color.addEventListener("input", () => {
-        input.value = color.value;
-        changed(color.value);
-      });
-      row.append(color);
-    }
-    return row;
-  }
-}
-
-/** @param {Layer} layer */
-function specOf({ name, values }) {
-  const pairs = Object.entries(values).filter(([, value]) => value !== "");
-  return pairs.length ? `${name}:${pairs.map(([key, value]) => `${key}=${value}`).join(",")}` : name;
-}
-
-/** @param {number} span */
-function niceStep(span) {
-  return 10 ** Math.floor(Math.log10(span / 100));
 }

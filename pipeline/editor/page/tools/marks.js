@@ -8,14 +8,14 @@
 export const PAINTS = /** @type {[string, string][]} */ ([
   ["style", "a style"],
   ["texture", "a texture"],
-  ["focus", "focus: smaller triangles"],
+  ["focus", "focus (finer)"],
 ]);
 /** What a region gets. */
 export const REGIONS = /** @type {[string, string][]} */ ([
   ["retriangulate", "other vertices"],
   ["style", "a style"],
   ["texture", "a texture"],
-  ["focus", "focus: smaller triangles"],
+  ["focus", "focus (finer)"],
   ["lock vertices", "pins on vertices"],
   ["lock edges", "pins on edges"],
   ["unlock vertices", "no pins on vertices"],
