@@ -20,7 +20,7 @@ import numpy as np
 
 from pipeline.edit_log.json_lines import as_json_lines, from_json_lines
 from pipeline.loop.animate import solve
-from pipeline.options.edit_log import EditLog, Replayed, left_out
+from pipeline.options.edit_log import EditLog, Replayed
 from pipeline.options.output import Output
 from pipeline.options.run import Run
 from pipeline.options.solve_options import SolveOptions
@@ -35,7 +35,6 @@ from stages.topology.refine_options import RefineOptions
 from stages.triangulate_options import TriangulateOptions
 from stages.validate import assert_valid
 from tests.random_edits import random_edit
-from warp_kernels.errors import EditError
 
 SIZE = (640, 360)
 TRIANGLES = 1500
@@ -44,44 +43,27 @@ QUICK = TriangulateOptions(frame_iterations=12, refine=RefineOptions(triangles=4
 """What is asked here does not depend on how well a picture is met."""
 
 
-class Watched:
-    """Edits as a log makes them, with a look at the mesh after each of them."""
+@contextmanager
+def watched_edits() -> Iterator[set[int]]:
+    """Look at the mesh after each edit of all solving while the block runs.
 
-    def __init__(self) -> None:
-        self.made: set[int] = set()
-        """Numbers of the edits that were made, and left a valid mesh."""
+    Yields:
+        Numbers of the edits that were made.
+    """
+    made: set[int] = set()
+    plain = EditLog.steps
 
-    def replay(self, log: EditLog, frame: int, worked: Worked) -> Replayed:
-        """Make the edits of a frame, in their order, and check what each leaves.
+    def steps(log: EditLog, frame: int, worked: Worked) -> Iterator[tuple[int, Replayed]]:
+        """Make the edits of a frame, and check what each leaves."""
+        for number, step in plain(log, frame, worked):
+            assert_valid(step.worked.mesh)
+            if not step.refused:
+                made.add(number)
+            yield number, step
 
-        Args:
-            log: The log.
-            frame: Number of the frame.
-            worked: Its mesh.
-        """
-        refused = []
-        for number, edit in enumerate(log.edits, start=1):
-            if edit.frame != frame:
-                continue
-            try:
-                worked = edit.apply(worked)
-            except EditError as error:
-                refused.append(left_out(number, edit, error))
-            else:
-                self.made.add(number)
-            assert_valid(worked.mesh)
-        return Replayed(worked, tuple(refused))
-
-    @contextmanager
-    def looking(self) -> Iterator[None]:
-        """Look at the edits of all solving while the block runs."""
-
-        def replay(log: EditLog, frame: int, worked: Worked) -> Replayed:
-            return self.replay(log, frame, worked)
-
-        # real need: a track stores the log by its class, which therefore cannot be another one
-        with patch.object(EditLog, "replay", replay):
-            yield
+    # real need: a track stores the log by its class, which therefore cannot be another one
+    with patch.object(EditLog, "steps", steps):
+        yield made
 
 
 def same(one: Mesh, other: Mesh) -> bool:
@@ -138,8 +120,7 @@ def check_clip(clip: Path, frames: FrameRange, seed: int, count: int) -> None:
     log = EditLog(edits)
     with tempfile.TemporaryDirectory() as folder:
         plain, first, again, none = (Path(folder) / f"{n}.mtrk" for n in ("p", "f", "a", "n"))
-        watched = Watched()
-        with watched.looking():
+        with watched_edits() as made:
             refused, seconds = _solved(clip, frames, log, first)
         _solved(clip, frames, from_json_lines(as_json_lines(log), "log"), again, threads=1)
         _solved(clip, frames, EditLog(), none)
@@ -148,7 +129,7 @@ def check_clip(clip: Path, frames: FrameRange, seed: int, count: int) -> None:
             for row in track.rows:
                 assert_valid(track.snapshot(row.frame).mesh)
         print(
-            f"clip, seed {seed}: {count} edits in {len(log.frames)} frames, {len(watched.made)} "
+            f"clip, seed {seed}: {count} edits in {len(log.frames)} frames, {len(made)} "
             f"made, {refused} warnings, {seconds:.0f} s; the mesh is valid after each edit and in "
             f"all {len(_rows(first))} frames, undone to the bit: "
             f"{_rows(none) == _rows(plain)}, replayed to the bit: {_rows(again) == _rows(first)}"

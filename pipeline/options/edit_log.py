@@ -1,5 +1,6 @@
 """A log of edits by hand, and what it makes of a mesh."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -50,6 +51,26 @@ class EditLog:
         """
         return next((frame for frame in self.mesh_frames if frame >= index), None)
 
+    def steps(self, frame: int, worked: "Worked") -> Iterator[tuple[int, Replayed]]:
+        """Make the edits of a frame, one by one.
+
+        Args:
+            frame: Number of the frame.
+            worked: Its mesh.
+
+        Yields:
+            The edit's place in the log, from 1, and what the mesh is after it.
+        """
+        for number, edit in enumerate(self.edits, start=1):
+            if edit.frame != frame:
+                continue
+            try:
+                worked = edit.apply(worked)
+            except EditError as error:
+                yield number, Replayed(worked, (left_out(number, edit, error),))
+            else:
+                yield number, Replayed(worked)
+
     def replay(self, frame: int, worked: "Worked") -> Replayed:
         """Make the edits of a frame, in their order.
 
@@ -57,14 +78,10 @@ class EditLog:
             frame: Number of the frame.
             worked: Its mesh.
         """
-        refused = []
-        for number, edit in enumerate(self.edits, start=1):
-            if edit.frame != frame:
-                continue
-            try:
-                worked = edit.apply(worked)
-            except EditError as error:
-                refused.append(left_out(number, edit, error))
+        refused: list[str] = []
+        for _, step in self.steps(frame, worked):
+            worked = step.worked
+            refused += step.refused
         return Replayed(worked, tuple(refused))
 
 
