@@ -12,7 +12,7 @@ from stages.hand.regions.style_region import StyleRegion
 from stages.hand.regions.texture_region import TextureRegion
 from stages.masks.gray import read_gray
 from stages.masks.region import Region
-from stages.media.embedded import is_embedded
+from stages.media.embedded import HEAD, is_embedded
 from warp_kernels.errors import MediaError, OptionError
 from warp_kernels.styles import STYLES, Style
 from warp_kernels.styles.texture import Texture
@@ -91,9 +91,12 @@ def _style_of(edit: StyleRegion | TextureRegion) -> Style:
         MediaError: If a picture cannot be read.
     """
     named = edit.style if isinstance(edit, StyleRegion) else edit.file
-    is_name = isinstance(edit, StyleRegion) or not is_embedded(named)
-    if is_name and (not named.isprintable() or len(named) > LONGEST):
-        raise OptionError(f"{reprlib.repr(named)} names nothing; give what --style takes")
+    is_style = isinstance(edit, StyleRegion)
+    if not is_style and named.lower().startswith("data:") and not is_embedded(named):
+        raise OptionError(f"{reprlib.repr(named)} holds no picture; one begins with {HEAD}")
+    if (is_style or not is_embedded(named)) and (not named.isprintable() or len(named) > LONGEST):
+        wanted = "what --style takes" if is_style else "a file"
+        raise OptionError(f"{reprlib.repr(named)} names nothing; give {wanted}")
     style: Style
     if isinstance(edit, StyleRegion):
         style = parse_member("style", edit.style, STYLES)

@@ -1,13 +1,14 @@
 """Pictures that a text holds itself, so that they go wherever the text goes."""
 
 import base64
-import binascii
 from functools import lru_cache
 
 import av
 import numpy as np
 from av.video.codeccontext import VideoCodecContext
 
+from stages.media.color.yuv import RgbReader, read_color
+from stages.media.png_parts import picture_alone
 from warp_kernels.errors import OptionError
 
 HEAD = "data:image/png;base64,"
@@ -16,7 +17,6 @@ MOST_ACROSS = 1024
 """Widest and highest picture [px]."""
 MOST_LETTERS = 1 << 20
 """Longest text."""
-_BEGIN = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR"
 _MOST_KEPT = 32
 
 
@@ -36,7 +36,9 @@ def embedded(png: bytes) -> str:
 
 @lru_cache(maxsize=_MOST_KEPT)
 def read_embedded(text: str) -> np.ndarray:
-    """The picture that a text holds.
+    """The picture that a text holds, over white where it is transparent, as that of a file is.
+
+    Nothing of it is unpacked but the picture itself: see `png_parts`.
 
     Args:
         text: See `embedded`.
@@ -45,27 +47,30 @@ def read_embedded(text: str) -> np.ndarray:
         Code values, [rows, columns, 3] uint8, which nobody changes.
 
     Raises:
-        OptionError: If it holds none, or a larger one than there may be.
+        OptionError: If it holds none, a damaged one, or a larger one than there may be.
     """
-    problem = OptionError(
-        f"a picture in an edit is no PNG of at most {MOST_ACROSS} x {MOST_ACROSS} px in base64; "
-        "name a file in its place"
-    )
     if len(text) > MOST_LETTERS:
-        raise problem
+        raise OptionError(
+            f"a picture in an edit takes {len(text)} letters, and {MOST_LETTERS} are the most; "
+            "name a file in its place"
+        )
     try:
         content = base64.b64decode(text.removeprefix(HEAD), validate=True)
-    except (binascii.Error, ValueError) as error:
-        raise problem from error
-    size = [int.from_bytes(content[at : at + 4], "big") for at in (16, 20)]
-    if not content.startswith(_BEGIN) or not all(0 < side <= MOST_ACROSS for side in size):
-        raise problem
-    try:
-        context = av.CodecContext.create("png", "r")
-        assert isinstance(context, VideoCodecContext)
-        (frame,) = [*context.decode(av.Packet(content)), *context.decode(None)]
-        pixels = frame.to_ndarray(format="rgb24")
+        pixels = _decoded(picture_alone(content, MOST_ACROSS))
     except (av.FFmpegError, ValueError) as error:
-        raise problem from error
+        raise OptionError(
+            f"a picture in an edit is no PNG of at most {MOST_ACROSS} x {MOST_ACROSS} px in "
+            "base64, or a damaged one; name a file in its place"
+        ) from error
     pixels.flags.writeable = False
     return pixels
+
+
+def _decoded(png: bytes) -> np.ndarray:
+    """Code values, [rows, columns, 3] uint8, of a whole picture."""
+    context = av.CodecContext.create("png", "r")
+    assert isinstance(context, VideoCodecContext)
+    (frame,) = [*context.decode(av.Packet(png)), *context.decode(None)]
+    size = frame.width, frame.height
+    # a copy: what shares the frame's memory keeps all that its decoder took
+    return RgbReader().read8(frame, read_color(frame), size).copy()

@@ -10,8 +10,8 @@ from warp_kernels.styles.style import ReadPicture, Style
 if TYPE_CHECKING:
     from warp_kernels.scene.texels import Texels
 
-LONGEST = 300
-"""Names of files that are longer are not told whole: they hold the picture itself."""
+HOLDS_IT = "data:"
+"""How a text begins that holds the picture itself: it is not told whole."""
 
 
 @dataclass(frozen=True)
@@ -55,5 +55,5 @@ class Texture(Style):
             return Texels.of(read(self.file)[None]).with_neighbours(repeats=False)
         except TrimotionError as error:
             known = ", ".join(PICTURES)
-            name = self.file if len(self.file) < LONGEST else f"{self.file[:24]}..."
+            name = f"{HOLDS_IT}..." if self.file.startswith(HOLDS_IT) else self.file
             raise OptionError(f"texture:{name}: {error}; or choose from {known}") from error
