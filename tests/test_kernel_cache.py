@@ -1,11 +1,13 @@
 """Compiled kernels find a place, or one line tells that there is none."""
 
+import errno
 import struct
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+import warp as wp
 from test_encode import ROOT
 
 from warp_kernels.device.compiling.whole_kernels import is_whole, remove_broken
@@ -26,9 +28,9 @@ print(wp.config.kernel_cache_dir)
 """
 
 
-def settled(place: str | Path, *spare: str) -> list[str]:
+def settled(place: str | Path, *spare: str, before: str = "") -> list[str]:
     """What a process of its own says of a place, and where it stores kernels."""
-    command = [sys.executable, "-c", SCRIPT, *spare]
+    command = [sys.executable, "-c", before + SCRIPT, *spare]
     env = {"WARP_CACHE_PATH": str(place), "PATH": "/usr/bin:/bin", "HOME": str(Path.home())}
     done = subprocess.run(command, capture_output=True, text=True, cwd=ROOT, env=env)
     assert done.returncode == 0, done.stderr
@@ -60,6 +62,37 @@ def test_a_place_that_cannot_be_used(tmp_path: Path, kind: str) -> None:
     assert "WARP_CACHE_PATH" in note
     assert "trimotion-kernels-" in place
     assert not Path(place).exists()
+
+
+@pytest.mark.parametrize(
+    ("code", "filled", "quiet"),
+    [
+        (errno.EROFS, True, True),
+        (errno.EACCES, True, True),
+        (errno.EROFS, False, False),
+        (errno.ENOSPC, True, False),
+    ],
+)
+def test_a_filled_place_that_is_closed_is_not_told_of(
+    tmp_path: Path, code: int, filled: bool, quiet: bool
+) -> None:
+    """A read-only container is meant to be so; an empty place or a full disk is told every time."""
+    if filled:
+        (tmp_path / wp.config.version / "wp_solver").mkdir(parents=True)
+    trial = f"""
+import sys
+import warp as wp
+from warp_kernels.device import kernel_cache
+write = kernel_cache._try_to_write
+def closed(place):
+    if str(place).startswith({str(tmp_path)!r}):
+        raise OSError({code}, "closed")
+    write(place)
+kernel_cache._try_to_write = closed
+"""
+    note, place = settled(tmp_path, before=trial)
+    assert (note == "") == quiet
+    assert "trimotion-kernels-" in place
 
 
 def test_no_place_at_all_is_one_line(tmp_path: Path) -> None:

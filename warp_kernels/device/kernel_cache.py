@@ -1,6 +1,7 @@
 """Where compiled kernels are kept: Warp's own place, or a temporary one if that cannot be used."""
 
 import atexit
+import errno
 import os
 import shutil
 import tempfile
@@ -15,6 +16,9 @@ from warp_kernels.errors import TrimotionError
 _ROOM = 8 * 2**20
 """Free space that the kernels of a run may take [bytes]."""
 
+_MAY_NOT = {errno.EROFS, errno.EACCES, errno.EPERM}
+"""What a place answers that was filled and then closed, as a container's is."""
+
 
 @cache
 def settle_cache() -> tuple[str, ...]:
@@ -22,6 +26,8 @@ def settle_cache() -> tuple[str, ...]:
 
     Returns:
         One sentence if a temporary place had to be taken; it is removed when the process ends.
+        Nothing is said of a place that is read-only by design: one that holds kernels, and that
+        this user may not change.
 
     Raises:
         TrimotionError: If there is no place at all.
@@ -34,6 +40,7 @@ def settle_cache() -> tuple[str, ...]:
         return ()
     except OSError as error:
         reason = str(error.strerror or error).lower()
+        closed = error.errno in _MAY_NOT
     try:
         spare = Path(tempfile.mkdtemp(prefix="trimotion-kernels-"))
         atexit.register(shutil.rmtree, spare, ignore_errors=True)
@@ -43,9 +50,11 @@ def settle_cache() -> tuple[str, ...]:
             f"compiled kernels cannot be stored in {place} ({reason}) nor in "
             f"{tempfile.gettempdir()}; name a folder with {VARIABLE}"
         ) from error
-    _share(place, spare / wp.config.version)
+    shared = _share(place, spare / wp.config.version)
     os.environ[VARIABLE] = str(spare)
     wp.config.kernel_cache_dir = None
+    if closed and shared:
+        return ()
     return (
         f"compiled kernels cannot be stored in {place} ({reason}): they are kept for this run "
         f"only; {VARIABLE} names another folder",
@@ -73,10 +82,17 @@ def _try_to_write(place: Path) -> None:
         trial.flush()
 
 
-def _share(place: Path, spare: Path) -> None:
-    """Let what was compiled before be found in the temporary place; it is only read."""
+def _share(place: Path, spare: Path) -> int:
+    """Let what was compiled before be found in the temporary place; it is only read.
+
+    Returns:
+        How many kernels, and what else lies beside them, were found.
+    """
+    shared = 0
     try:
         for entry in place.iterdir():
             (spare / entry.name).symlink_to(entry.resolve())
+            shared += 1
     except OSError:
         pass  # it is compiled again
+    return shared
