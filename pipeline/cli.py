@@ -160,12 +160,14 @@ def run_info(arguments: argparse.Namespace) -> None:
         arguments: What the user gave.
     """
     from pipeline.commands.info import describe, edits_in
+    from pipeline.commands.pipes import shown_name
 
     path = Path(arguments.file)
     if arguments.edits:
         print(edits_in(path), end="")
     else:
-        print(describe(path, as_json=arguments.json))
+        called = getattr(arguments, "address", None) or str(shown_name(path))
+        print(describe(path, as_json=arguments.json, called=called))
 
 
 def run_measure(arguments: argparse.Namespace) -> None:

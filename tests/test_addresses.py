@@ -89,11 +89,30 @@ def test_a_film_on_the_web_is_as_good_as_a_file(site: tuple[str, Path], tmp_path
     assert json.loads((tmp_path / "r.json").read_text())["source"] == f"{address}/away/there"
 
 
-@pytest.mark.parametrize("command", ["animate", "solve", "preview"])
+def test_a_film_on_the_web_is_told_of_and_compared(
+    site: tuple[str, Path], tmp_path: Path, capsys
+) -> None:
+    """By the figures of the file itself."""
+    address, file = f"{site[0]}/clip.mkv", str(site[1] / "clip.mkv")
+    told = []
+    for name in (file, address):
+        assert main(["info", name, "--json", "--allow-url"]) == 0
+        told.append(json.loads(capsys.readouterr().out))
+    assert [each.pop("path") for each in told] == [file, address]
+    assert told[0] == told[1]
+    assert main(["measure", address, file, "--json", "--allow-url"]) == 0
+    assert json.loads(capsys.readouterr().out)["rmse"] == 0
+
+
+OTHERS = {"info": [], "measure": ["other.mkv"]}
+"""What a command wants beside its source; others write a file."""
+
+
+@pytest.mark.parametrize("command", ["animate", "solve", "preview", "info", "measure"])
 def test_nothing_is_fetched_unasked(command: str, tmp_path: Path, capsys) -> None:
     """The line names the option."""
     source = "https://example.invalid/clip.mp4"
-    assert main([command, source, "-o", str(tmp_path / "o.png")]) == 3
+    assert main([command, source, *OTHERS.get(command, ["-o", str(tmp_path / "o.png")])]) == 3
     error = capsys.readouterr().err
     assert error == (
         f"trimotion: error: {source}: is an address; add --allow-url to have it fetched\n"

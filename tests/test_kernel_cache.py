@@ -80,15 +80,13 @@ def test_a_filled_place_that_is_closed_is_not_told_of(
     if filled:
         (tmp_path / wp.config.version / "wp_solver").mkdir(parents=True)
     trial = f"""
-import sys
-import warp as wp
-from warp_kernels.device import kernel_cache
-write = kernel_cache._try_to_write
-def closed(place):
-    if str(place).startswith({str(tmp_path)!r}):
+import tempfile
+opened = tempfile.TemporaryFile
+def closed(dir):
+    if str(dir).startswith({str(tmp_path)!r}):
         raise OSError({code}, "closed")
-    write(place)
-kernel_cache._try_to_write = closed
+    return opened(dir=dir)
+tempfile.TemporaryFile = closed
 """
     note, place = settled(tmp_path, before=trial)
     assert (note == "") == quiet

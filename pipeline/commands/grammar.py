@@ -215,11 +215,11 @@ def _add_output(parser: argparse.ArgumentParser, metavar: str, text: str) -> Non
     )
 
 
-def _add_allow_url(parser: argparse.ArgumentParser) -> None:
+def _add_allow_url(parser: argparse.ArgumentParser, metavar: str = "INPUT") -> None:
     parser.add_argument(
         "--allow-url",
         action="store_true",
-        help="INPUT may be an http or https address; it is fetched whole, into a temporary file",
+        help=f"{metavar} may be an http or https address; it is fetched whole, to a temporary file",
     )
 
 
@@ -265,6 +265,7 @@ def _add_info(commands: Any) -> None:
         action="store_true",
         help="print the edits by hand that a track holds, as --edits of solve reads them",
     )
+    _add_allow_url(parser, "FILE")
 
 
 def _add_measure(commands: Any) -> None:
@@ -284,6 +285,7 @@ def _add_measure(commands: Any) -> None:
         help="what the output was drawn from; its frames are compared if no range is given",
     )
     parser.add_argument("--json", action="store_true", help="print JSON, with every frame")
+    _add_allow_url(parser, "SOURCE")
     add_job_options(parser, "measure")
     _add_telling(parser.add_argument_group("messages"))
 

@@ -17,24 +17,28 @@ MOST_SHOTS = 12
 """Shots of a track that are listed for people."""
 
 
-def describe(path: Path, *, as_json: bool) -> str:
+def describe(path: Path, *, as_json: bool, called: str | None = None) -> str:
     """Describe a source or a mesh track.
 
     Args:
         path: A video, a still, a pattern of numbered stills or a track.
         as_json: Whether to give JSON rather than lines.
+        called: What the user calls it, if that is another name: a pipe, an address.
 
     Raises:
         MediaError: If it cannot be read.
         TrackError: If it is a damaged track; all of its frames are looked at.
         OptionError: If a pattern has more than one number field.
     """
+    name = called or str(path)
     if is_track(path):
         with TrackReader(path) as track:
             track.check()
-            return json.dumps(_facts(track), indent=2) if as_json else _aligned(_track_rows(track))
-    info = probe(path)
-    return json.dumps(info.as_dict(), indent=2) if as_json else _aligned(_rows(info))
+            facts, rows = {"file": name, **_facts(track)}, _track_rows(track)
+    else:
+        info = probe(path)
+        facts, rows = {**info.as_dict(), "path": name}, _rows(info)
+    return json.dumps(facts, indent=2) if as_json else _aligned([("file", name), *rows])
 
 
 def edits_in(path: Path) -> str:
@@ -71,7 +75,6 @@ def _facts(track: TrackReader) -> dict[str, object]:
     """All that a track says about itself, but its meshes."""
     header = track.header
     return {
-        "file": str(track.path),
         "kind": "track",
         "format": FORMAT,
         "program": header.program,
@@ -96,7 +99,6 @@ def _track_rows(track: TrackReader) -> list[tuple[str, str]]:
         ends += f"; unfinished, {header.frame_range} were asked for"
     starts = ", ".join(map(str, shots[:MOST_SHOTS])) + (", ..." if len(shots) > MOST_SHOTS else "")
     told = [
-        ("file", str(track.path)),
         ("kind", f"mesh track of format {FORMAT}, by trimotion {header.program}"),
         ("source", header.source.path),
         ("size", _size(header.info)),
@@ -123,7 +125,6 @@ def _focus(spelled: str) -> str:
 def _rows(info: MediaInfo) -> list[tuple[str, str]]:
     """Labels and values that say something about this source."""
     rows = [
-        ("file", str(info.path)),
         ("kind", f"{info.kind} ({info.container})"),
         ("size", _size(info)),
         ("codec", f"{info.codec}, {info.pixel_format}"),

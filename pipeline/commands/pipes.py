@@ -56,7 +56,7 @@ def piped(arguments: argparse.Namespace) -> Iterator[None]:
             place.mkdir()
             source = fetched(address, place)
             names[source] = arguments.address = address
-            arguments.source = str(source)
+            setattr(arguments, "file" if "file" in arguments else "source", str(source))
         if not writes:
             with _told_as(names):
                 yield
@@ -79,12 +79,14 @@ def _address_in(arguments: argparse.Namespace) -> str | None:
     """
     if "allow_url" not in arguments:
         return None
-    named = [name for name in getattr(arguments, "inputs", [arguments.source]) if is_address(name)]
+    given = vars(arguments)
+    inputs = given.get("inputs") or [given.get("source", given.get("file"))]
+    named = [name for name in inputs if is_address(name)]
     if not named:
         return None
     if not arguments.allow_url:
         refuse_address(named[0])
-    if len(getattr(arguments, "inputs", named)) > 1:
+    if len(inputs) > 1:
         raise OptionError(f"{named[0]}: an address is an input of its own; name it alone")
     return named[0]
 
