@@ -56,7 +56,7 @@ def piped(arguments: argparse.Namespace) -> Iterator[None]:
             place.mkdir()
             source = fetched(address, place)
             names[source] = arguments.address = address
-            setattr(arguments, "file" if "file" in arguments else "source", str(source))
+            setattr(arguments, _source_key(arguments), str(source))
         if not writes:
             with _told_as(names):
                 yield
@@ -80,7 +80,7 @@ def _address_in(arguments: argparse.Namespace) -> str | None:
     if "allow_url" not in arguments:
         return None
     given = vars(arguments)
-    inputs = given.get("inputs") or [given.get("source", given.get("file"))]
+    inputs = given["inputs"] if "inputs" in given else [given[_source_key(arguments)]]
     named = [name for name in inputs if is_address(name)]
     if not named:
         return None
@@ -89,6 +89,11 @@ def _address_in(arguments: argparse.Namespace) -> str | None:
     if len(inputs) > 1:
         raise OptionError(f"{named[0]}: an address is an input of its own; name it alone")
     return named[0]
+
+
+def _source_key(arguments: argparse.Namespace) -> str:
+    """Where the name of the source stands; `info` reads a file of any kind."""
+    return "file" if arguments.command == "info" else "source"
 
 
 @contextmanager
