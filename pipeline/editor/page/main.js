@@ -151,8 +151,8 @@ function main() {
     button.addEventListener("click", () => stage.setView(/** @type {any} */ (button.dataset.view)));
     stage.watch(() => button.setAttribute("aria-pressed", String(button.dataset.view === stage.view)));
   }
-  element("undo").addEventListener("click", () => stage.turn("undo"));
-  element("redo").addEventListener("click", () => stage.turn("redo"));
+  element("undo").addEventListener("click", () => stage.underway.turn("undo"));
+  element("redo").addEventListener("click", () => stage.underway.turn("redo"));
   element("help").addEventListener("click", () => /** @type {HTMLDialogElement} */ (element("keys")).showModal());
   stage.watch(() => tellState(stage));
   stage.watch(() => tellTime(stage));

@@ -1,9 +1,10 @@
-import { carriedOn, Mesh } from "./mesh/mesh.js";
+import { Mesh } from "./mesh/mesh.js";
 import { pick } from "./mesh/pick.js";
 import { Ghosts } from "./tools/ghosts.js";
 import { Hand } from "./tools/hand.js";
 import { Marks } from "./tools/marks.js";
 import { planned } from "./tools/plans.js";
+import { Underway } from "./tools/underway.js";
 import { Player } from "./time/player.js";
 import { Camera } from "./view/camera.js";
 import { Overlay } from "./view/overlay.js";
@@ -74,7 +75,7 @@ export class Stage {
     this.moving = null;
     /** @type {Point[]} */
     this.polygon = [];
-    this.edits = Promise.resolve();
+    this.underway = new Underway(this);
     /** @type {(() => void)[]} */
     this.watchers = [];
     /** @type {((lines: string[]) => void)[]} */
@@ -166,8 +167,8 @@ export class Stage {
     if (packed.head.kind === "mesh") {
       const before = this.mesh;
       this.mesh = new Mesh(packed);
-      this.painter.setMesh(this.mesh);
-      if (before && this.moving) this.moving = carriedOn(this.moving, before, this.mesh);
+      this.underway.place();
+      if (before && this.moving) this.moving = before.carriedOn(this.moving, this.mesh);
       if (packed.head.view === "live") this.ghosts.renewNowAndThen();
       else this.hover();
     } else if (packed.head.kind === "picture" || packed.head.kind === "drawn") {
@@ -320,40 +321,9 @@ export class Stage {
     return { edit: kind, frame: this.frame, at: [at.x, at.y], ...this.brush, seed: this.state.number };
   }
 
-  /**
-   * Make edits, one after the other.
-   * @param {...import("./tools/plans.js").Edit} edits
-   */
+  /** @param {...import("./tools/plans.js").Edit} edits made one after the other */
   make(...edits) {
-    this.pause();
-    if (this.view !== "edited" && this.view !== "live") {
-      this.told.say("Now the frame is shown as your edits leave it: make the edit again.");
-      this.setView("edited");
-      return this.edits;
-    }
-    const framed = edits.map(({ edit, ...rest }) => ({ edit, frame: this.frame, ...rest }));
-    this.edits = this.edits.then(async () => {
-      try {
-        const { number } = await this.connection.ask("edit", { edits: framed, after: this.state.number });
-        this.state.number = number;
-      } catch (error) {
-        this.told.problem(/** @type {Error} */ (error).message);
-      }
-    });
-    return this.edits;
-  }
-
-  /** @param {"undo" | "redo"} what */
-  turn(what) {
-    this.edits = this.edits.then(async () => {
-      try {
-        const { frame } = await this.connection.ask(what);
-        this.told.say(frame === null ? `There is nothing to ${what}` : `${what === "undo" ? "Undone" : "Done again"}, frame ${frame}`);
-      } catch (error) {
-        this.told.problem(/** @type {Error} */ (error).message);
-      }
-    });
-    return this.edits;
+    return this.underway.make(edits);
   }
 
   /** Let go of what was begun. */

@@ -187,6 +187,9 @@ class Window:
                 await self._news.wait()
                 self._news.clear()
                 words, self._words = self._words, []
+                # who is told that an edit is made has its mesh
+                if "mesh" in self._pictures:
+                    await self._socket.send_bytes(self._pictures.pop("mesh"))
                 for text in words:
                     await self._socket.send_text(text)
                 while self._pictures:

@@ -9,7 +9,8 @@ export class Mesh {
     /** @type {number} */ this.width = head.width;
     /** @type {number} */ this.height = head.height;
     /** @type {number} */ this.rmse = head.rmse;
-    /** @type {Float64Array} */ this.vertices = arrays.vertices;
+    /** @type {Float64Array} */ this.given = arrays.vertices;
+    this.vertices = this.given;
     /** @type {Uint32Array} */ this.triangles = arrays.triangles;
     /** @type {Float64Array} */ this.ids = arrays.ids;
     /** @type {Uint8Array} */ this.held = arrays.held;
@@ -116,17 +117,34 @@ export class Mesh {
     };
     return this.neighbours[vertex].reduce((best, other) => (away(other) < away(best) ? other : best));
   }
-}
+  /**
+   * Put a vertex elsewhere; on the border it slides along that. Triangles keep their colours.
+   * @param {number} id
+   * @param {Point} to
+   */
+  put(id, to) {
+    const vertex = this.ids.indexOf(id);
+    if (vertex < 0) return;
+    if (this.vertices === this.given) this.vertices = this.given.slice();
+    const { x, y } = this.at(vertex);
+    if (x > 0 && x < this.width) this.vertices[2 * vertex] = to.x;
+    if (y > 0 && y < this.height) this.vertices[2 * vertex + 1] = to.y;
+  }
 
-/**
- * A vertex that is carried while another mesh comes, which may have lost it.
- * @param {{vertex: number, from: Point, to: Point}} moving
- * @param {Mesh} before
- * @param {Mesh} mesh
- */
-export function carriedOn({ vertex, from, to }, before, mesh) {
-  const now = mesh.ids.indexOf(before.ids[vertex]);
-  if (now < 0) return null;
-  const isMoved = to.x !== from.x || to.y !== from.y;
-  return { vertex: now, from: mesh.at(now), to: isMoved ? to : mesh.at(now) };
+  /** All vertices lie where they came. */
+  putBack() {
+    this.vertices = this.given;
+  }
+
+  /**
+   * A vertex that is carried while another mesh comes, which may have lost it.
+   * @param {{vertex: number, from: Point, to: Point}} moving
+   * @param {Mesh} mesh the other one
+   */
+  carriedOn({ vertex, from, to }, mesh) {
+    const now = mesh.ids.indexOf(this.ids[vertex]);
+    if (now < 0) return null;
+    const isMoved = to.x !== from.x || to.y !== from.y;
+    return { vertex: now, from: mesh.at(now), to: isMoved ? to : mesh.at(now) };
+  }
 }

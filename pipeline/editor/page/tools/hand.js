@@ -54,11 +54,12 @@ export class Hand {
   /** Put the vertex that was taken up where it is now. */
   drop() {
     const { stage } = this;
-    const { moving } = stage;
+    const { mesh, moving } = stage;
     stage.moving = null;
-    if (moving && (moving.to.x !== moving.from.x || moving.to.y !== moving.from.y)) {
-      const { from, to } = moving;
-      stage.make({ edit: "move_vertex", at: [from.x, from.y], to: [to.x, to.y] });
+    if (mesh && moving && (moving.to.x !== moving.from.x || moving.to.y !== moving.from.y)) {
+      const { vertex, from, to } = moving;
+      const edit = { edit: "move_vertex", at: /** @type {[number, number]} */ ([from.x, from.y]), to: [to.x, to.y] };
+      stage.underway.make([edit], { id: mesh.ids[vertex], to });
     }
     stage.repaint();
   }

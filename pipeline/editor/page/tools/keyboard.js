@@ -63,7 +63,7 @@ export class Keyboard {
     const isOnStage = target === this.stage.canvas || target === document.body;
     if ((event.ctrlKey || event.metaKey) && event.key.toLowerCase() === "z") {
       event.preventDefault();
-      this.stage.turn(event.shiftKey ? "redo" : "undo");
+      this.stage.underway.turn(event.shiftKey ? "redo" : "undo");
       return;
     }
     if (event.ctrlKey || event.metaKey || event.altKey) return;

@@ -1,0 +1,85 @@
+"""Edits on their way: what the editor's page shows before the program has answered."""
+
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from pipeline.edit_log.journal import EditJournal
+from tests.browsing import assert_shows_the_mesh, find, log_of, place, wait_for_edits
+from tests.editing import Served
+
+
+def test_a_dropped_vertex_lies_there_at_once(page: Page, server: Served) -> None:
+    """What is typed before the program has answered goes on from there, and back if refused."""
+    x, y = find(page, "vertex")
+    number = page.evaluate("([x, y]) => trimotion.mesh.vertices.indexOf(x) / 2", [x, y])
+    with waiting(server) as answers:
+        page.mouse.move(*place(page, x, y))
+        press_and_type(page, "2, 1")
+        assert at(page, number) == [x + 2, y + 1]
+        page.mouse.move(*place(page, x + 2, y + 1))
+        press_and_type(page, "-1.5, 0.25")
+        assert at(page, number) == [x + 0.5, y + 1.25]
+        answers.set()
+        wait_for_edits(page, 2)
+    with EditJournal(server.studio.session.path) as journal:
+        first, second = journal.log.edits
+    assert second.at == first.to  # type: ignore[attr-defined]
+    assert second.to == (x + 0.5, y + 1.25)  # type: ignore[attr-defined]
+    assert_shows_the_mesh(page, server)
+    with waiting(server) as answers:
+        page.mouse.move(*place(page, x + 0.5, y + 1.25))
+        press_and_type(page, "0, 90")  # out of the picture
+        page.mouse.move(*place(page, x + 0.5, y + 1.25))
+        page.keyboard.press("g")  # another one, which is nearest now
+        page.keyboard.press("Escape")
+        page.keyboard.press("Control+z")  # of what is refused: what was made before it stays
+        answers.set()
+        expect(page.locator("#toast")).to_contain_text("outside")
+    page.wait_for_function("() => !trimotion.underway.errands.length")
+    wait_for_edits(page, 2)
+    assert at(page, number) == [x + 0.5, y + 1.25]
+    assert_shows_the_mesh(page, server)
+    with waiting(server) as answers:
+        page.mouse.move(*place(page, x + 0.5, y + 1.25))
+        press_and_type(page, "60, 0")  # over others
+        page.mouse.move(*place(page, x + 60.5, y + 1.25))
+        page.keyboard.press("x")  # of the same vertex: it is not there
+        answers.set()
+        expect(page.locator("#toast")).to_contain_text("what followed was not made either")
+    assert log_of(server) == ["move_vertex", "move_vertex"]
+    assert_shows_the_mesh(page, server)
+
+
+@contextmanager
+def waiting(server: Served) -> Iterator[threading.Event]:
+    """Edits are made once the event is set: a busy machine, for as long as a test likes."""
+    session, answers = server.studio.session, threading.Event()
+    make = session.make
+
+    def later(*given: Any, **named: Any) -> int:
+        assert answers.wait(60)
+        return make(*given, **named)
+
+    with pytest.MonkeyPatch.context() as patch:
+        # real need: a machine that is busy for as long as one likes
+        patch.setattr(session, "make", later)
+        yield answers
+        answers.set()
+
+
+def press_and_type(page: Page, way: str) -> None:
+    """Take up what is at the pointer, and put it down elsewhere."""
+    page.keyboard.press("g")
+    page.keyboard.type(way)
+    page.keyboard.press("Enter")
+
+
+def at(page: Page, vertex: int) -> list[float]:
+    """Where a vertex is on the page."""
+    found: list[float] = page.evaluate("v => Object.values(trimotion.mesh.at(v))", vertex)
+    return found
