@@ -28,9 +28,11 @@ from stages.hand.collapse_vertex import CollapseVertex
 from stages.hand.flip_edge import FlipEdge
 from stages.hand.insert import Insert
 from stages.hand.move_vertex import MoveVertex
+from stages.hand.regions.set_focus import SetFocus
 from stages.hand.split_edge import SplitEdge
 from stages.hand.split_triangle import SplitTriangle
 from stages.hand.worked import Worked
+from stages.masks.area import Stroke
 from stages.mesh import Mesh
 from stages.validate import assert_valid
 from tests.editing import opened, write_job
@@ -266,6 +268,30 @@ def test_the_optimiser_goes_where_it_is_led(session: Session) -> None:
         session.optimise(0, {"trust_region": -1.0})
     session.undo()
     assert session.live is None
+
+
+def test_the_optimiser_sees_what_is_painted(session: Session) -> None:
+    """Triangles gather where focus is painted, while it works or before; what is told does not."""
+
+    def gathered() -> int:
+        live = session.optimise(0, {"triangles": 40})
+        for _ in range(60):
+            live = session.optimise(0, {"triangles": 40})
+        shown = session.easel.fitted(live.frame, live.worked, session.film.model)
+        assert live.rmse == pytest.approx(shown.rmse)
+        away = live.worked.mesh.corners.mean(axis=1) - (70.0, 45.0)
+        return int((np.hypot(*away.T) < 18).sum())
+
+    plain = gathered()
+    focus = SetFocus(frame=0, at=(70.0, 45.0), radius=18.0, strength=4.0)
+    session.make([focus], after=0, in_live=True)
+    assert gathered() > 1.5 * plain
+    assert session.focus(0) == (Stroke(focus.area, 4.0),)
+    session.live = None
+    assert gathered() > 1.5 * plain
+    session.undo()
+    assert gathered() == plain
+    assert session.focus(0) == ()
 
 
 def test_the_optimiser_goes_on_with_edits(session: Session) -> None:

@@ -214,12 +214,39 @@ def test_a_region_is_drawn_by_clicks_and_by_keys(page: Page, server: Served) -> 
     assert log_of(server) == ["lock", "set_focus"]
 
 
-def test_focus_is_painted(page: Page, server: Served) -> None:
+def test_focus_is_painted_and_seen(page: Page, server: Served) -> None:
+    """Blue at once, before anything is optimised; it can be hidden, and goes when it is undone."""
     page.locator("#set-paints").select_option("focus")
-    page.mouse.click(*place(page, *find(page, "face")))
-    wait_for_edits(page, 1)
-    assert log_of(server) == ["set_focus"]
-    keep_page(page, "focus_painted")
+    page.evaluate("() => trimotion.setBrush({radius: 12})")
+    page.mouse.move(5, 5)
+    plain = seen(page, "focus_before")
+    spots = [(30.0, 26.0), (40.0, 30.0), (50.0, 34.0)]
+    for count, spot in enumerate(spots, start=1):
+        page.mouse.click(*place(page, *spot))
+        wait_for_edits(page, count)
+    page.locator("#set-region").select_option("focus")
+    page.evaluate("() => trimotion.marks.focus = 4")
+    drag_around(page, [(62.0, 20.0), (88.0, 24.0), (80.0, 50.0), (64.0, 44.0)])
+    wait_for_edits(page, 4)
+    page.mouse.move(5, 5)
+    painted = seen(page, "focus_painted", plain)
+    (spot, edge), off = (around(page, *at) for at in ((40, 30), (76, 36))), around(page, 8, 56)
+    for place_of_it in (spot, edge):
+        bluer = (painted - plain)[place_of_it].mean(axis=(0, 1)) * (-1, 0, 1)
+        assert bluer.sum() > CHANGE
+    assert np.abs(painted - plain)[off].max() <= CHANGE
+    page.locator("#set-painted").fill("0")
+    assert np.abs(seen(page, "focus_hidden") - plain).max() <= CHANGE
+    page.locator("#set-painted").fill("0.6")
+    page.keyboard.press("Control+z")
+    wait_for_edits(page, 3)
+    fewer = seen(page, "focus_undone", painted)
+    assert np.abs(fewer - plain)[edge].max() <= CHANGE
+    assert np.abs(fewer - painted)[spot].max() <= CHANGE
+    page.reload()
+    expect(page.locator("#loading")).to_be_hidden()
+    page.wait_for_function("() => trimotion.painter.textures.painted")
+    assert log_of(server) == ["set_focus"] * 3
 
 
 def test_a_drawing_is_kept_once(tmp_path: Path) -> None:

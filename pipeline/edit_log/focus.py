@@ -7,8 +7,22 @@ from pipeline.options.edit_log import EditLog
 from pipeline.track import TrackReader
 from stages.hand.regions.set_focus import SetFocus
 from stages.hand.worked import Worked
+from stages.masks.area import Stroke
+from stages.mesh import Mesh
 from stages.motion.painted_focus import NOTHING_PAINTED, PaintedFocus
 from stages.snapshot import Snapshot
+
+
+def painted_in(log: EditLog, frame: int, mesh: Mesh) -> tuple[Stroke, ...]:
+    """What is painted in a frame itself.
+
+    Args:
+        log: The edits; those that cannot be made are left out.
+        frame: Number of the frame.
+        mesh: Its mesh, before or after its edits.
+    """
+    painting = EditLog(tuple(edit for edit in log.edits if isinstance(edit, SetFocus)))
+    return painting.replay(frame, Worked(mesh)).worked.focus
 
 
 def followed_focus(focus: PaintedFocus, log: EditLog, frames: Iterable[Snapshot]) -> PaintedFocus:
@@ -19,12 +33,10 @@ def followed_focus(focus: PaintedFocus, log: EditLog, frames: Iterable[Snapshot]
         log: The edits.
         frames: Frames that are final, in order.
     """
-    painting = EditLog(tuple(edit for edit in log.edits if isinstance(edit, SetFocus)))
     for snapshot in frames:
         focus = focus.followed(snapshot)
-        if snapshot.frame_index in painting.frames:
-            painted = painting.replay(snapshot.frame_index, Worked(snapshot.mesh))
-            focus = focus.with_strokes(snapshot, painted.worked.focus)
+        if strokes := painted_in(log, snapshot.frame_index, snapshot.mesh):
+            focus = focus.with_strokes(snapshot, strokes)
     return focus
 
 

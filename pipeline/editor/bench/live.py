@@ -11,6 +11,7 @@ from stages.frame import Frame
 from stages.hand import Edit
 from stages.hand.worked import Worked
 from stages.mesh import Mesh
+from stages.motion.painted_focus import NOTHING_PAINTED
 from stages.motion.springs import LOCK
 from stages.optimize import load_mesh, optimize
 from stages.optimize_options import OptimizeOptions
@@ -71,15 +72,13 @@ class Live:
     """
 
     def __init__(self, device: Device, options: SolveOptions, frame: Frame, worked: Worked) -> None:
-        solving = options.triangulate
-        size = (frame.width, frame.height)
-        self._space = SPACES[solving.space]()
-        self._workspace = Workspace(device, size, solving.model, solving.sums)
-        self._appraiser = Appraiser(self._workspace, SLIVER_HEIGHT)
-        self._topology = TOPOLOGIES[solving.topology]()
-        self._workspace.load_image(self._space.convert(frame.pixels))
-        self._appraiser.hold(worked.locks)
+        self._device, self._solving = device, options.triangulate
+        self._space = SPACES[self._solving.space]()
+        self._topology = TOPOLOGIES[self._solving.topology]()
         self.frame, self.worked, self.steps = frame, worked, 0
+        self._plain = self._bench(replace(frame, weights=None))
+        self._seeing = self._plain  # with what a person painted that errors count more
+        self._hold(worked)
 
     def step(self, course: Descent) -> None:
         """One step of every vertex; now and then triangles come and go.
@@ -90,11 +89,12 @@ class Live:
         mesh = self.worked.mesh
         scale = self._space.scale
         way = replace(course.optimize, regularity=course.optimize.regularity * scale)
-        load_mesh(self._workspace, mesh, self._springs(mesh))
-        mesh = optimize(self._workspace, mesh, 1, way)
+        workspace, appraiser = self._seeing
+        load_mesh(workspace, mesh, self._springs(mesh))
+        mesh = optimize(workspace, mesh, 1, way)
         self.steps += 1
         if self.steps % ROUND == 0:
-            mesh = self._topology.adapt(mesh, self._appraiser, self._goal(mesh, course.refine))
+            mesh = self._topology.adapt(mesh, appraiser, self._goal(mesh, course.refine))
         self.worked = self.worked.became(mesh)
 
     def make(self, edits: Iterable[Edit]) -> None:
@@ -109,25 +109,44 @@ class Live:
         worked = self.worked
         for edit in edits:
             worked = edit.apply(worked)
-        self.worked = worked
-        self._appraiser.hold(worked.locks)
+        self._hold(worked)
 
     @property
     def energies(self) -> np.ndarray:
-        """E(T) of the space of the error [code value^2 px], [T]."""
-        return self._appraiser.energies(self.worked.mesh)
+        """E(T) of the space of the error [code value^2 px], [T]; all pixels count alike in it."""
+        return self._plain[1].energies(self.worked.mesh)
 
     @property
     def colors(self) -> np.ndarray:
         """Colours at the centres of the triangles, of the space of the error, [T, 3]."""
-        self._appraiser.energies(self.worked.mesh)
-        return self._appraiser.colors
+        _, appraiser = self._plain
+        appraiser.energies(self.worked.mesh)
+        return appraiser.colors
 
     @property
     def rmse(self) -> float:
         """Root mean square error [code values of the space]."""
         mesh = self.worked.mesh
         return float(np.sqrt(2.0 * self.energies.sum() / (CHANNELS * mesh.width * mesh.height)))
+
+    def _bench(self, frame: Frame) -> tuple[Workspace, Appraiser]:
+        """What a picture, with its weights if it has any, is worked on with."""
+        solving, is_weighted = self._solving, frame.weights is not None
+        size = frame.width, frame.height
+        workspace = Workspace(self._device, size, solving.model, solving.sums, is_weighted)
+        workspace.load_image(self._space.convert(frame.pixels), frame.weights)
+        return workspace, Appraiser(workspace, SLIVER_HEIGHT)
+
+    def _hold(self, worked: Worked) -> None:
+        """Go on with a mesh: with what is held of it, and where errors count more in it."""
+        is_known = self._seeing is not self._plain and self.worked.focus == worked.focus
+        if worked.focus and not is_known:
+            plain = replace(self.frame, weights=None)
+            frame = NOTHING_PAINTED.weighed(plain, worked.mesh, worked.focus)
+            self._seeing = self._plain if frame.weights is None else self._bench(frame)
+        self.worked = worked
+        for _, appraiser in (self._plain, self._seeing):
+            appraiser.hold(worked.locks)
 
     def _springs(self, mesh: Mesh) -> np.ndarray:
         """What holds vertices fast that a person holds, [V, 3]."""

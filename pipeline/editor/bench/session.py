@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from pipeline.edit_log.focus import painted_in
 from pipeline.edit_log.journal import EditJournal
 from pipeline.edit_log.painted_regions import check_style, painted_regions
 from pipeline.editor.bench.easel import MOST_ACROSS, Easel
@@ -24,6 +25,7 @@ from pipeline.options.solve_options import SolveOptions
 from stages.frame import Frame
 from stages.hand import Edit
 from stages.hand.worked import Worked
+from stages.masks.area import Stroke
 from stages.masks.region import Region
 from stages.media.writing.commit import write_file
 from stages.media.writing.still_writer import encode_still
@@ -169,6 +171,20 @@ class Session:
         while len(self._fitted) > MOST_FITTED:
             self._fitted.popitem(last=False)
         return known[1]
+
+    def focus(self, frame: int, view: str = EDITED) -> tuple[Stroke, ...]:
+        """Where was painted in a frame that errors count more.
+
+        Args:
+            frame: Its number.
+            view: One of `VIEWS`, or `LIVE`.
+
+        Raises:
+            EditError: If the track holds no such frame.
+        """
+        self._check(frame)
+        log = {BEFORE: EditLog(), SOLVED: self.film.solved_with}.get(view, self.log)
+        return painted_in(log, frame, self.worked(frame).mesh)
 
     def prepare(self, look: Look, across: int = MOST_ACROSS) -> bool:
         """Make all that a look is drawn with.

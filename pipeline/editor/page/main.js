@@ -87,6 +87,7 @@ function main() {
   const connection = new Connection({
     tell: (words) => {
       if (words.tell === "state") stage.setState(words);
+      else if (words.tell === "focus") stage.setFocus(words);
       else if (words.tell === "problem") toast(words.text);
       else if (words.tell === "preparing") element("preparing").hidden = !words.is;
       else film.tell(words);

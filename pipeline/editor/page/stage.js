@@ -7,6 +7,7 @@ import { planned } from "./tools/plans.js";
 import { Underway } from "./tools/underway.js";
 import { Player } from "./time/player.js";
 import { Camera } from "./view/camera.js";
+import { focusSheet } from "./view/focus.js";
 import { Overlay } from "./view/overlay.js";
 import { Painter } from "./view/painter.js";
 
@@ -42,7 +43,7 @@ export class Stage {
     this.tool = "edit";
     /** @type {"all" | "vertex" | "edge" | "face"} */
     this.mode = "all";
-    this.opacities = { picture: 1, drawn: 1, errors: 0, mesh: 0.6 };
+    this.opacities = { picture: 1, drawn: 1, errors: 0, painted: 0.6, mesh: 0.6 };
     this.hiddenMesh = 0.6;
     this.isVeiled = false;
     /** @type {Brush} */
@@ -63,6 +64,7 @@ export class Stage {
     this.marks = new Marks(this);
     this.ghosts = new Ghosts(this);
     this.hand = new Hand(this);
+    this.strokes = "[]";
     this.isLooking = false;
     this.isLookWanted = false;
     /** @type {Mesh | null} */
@@ -120,7 +122,7 @@ export class Stage {
   }
 
   /**
-   * @param {"picture" | "drawn" | "errors" | "mesh"} layer
+   * @param {"picture" | "drawn" | "errors" | "painted" | "mesh"} layer
    * @param {number} value
    */
   setOpacity(layer, value) {
@@ -176,6 +178,16 @@ export class Stage {
     }
     if (isNext) this.changed();
     else this.repaint();
+  }
+
+  /** @param {{frame: number, strokes: import("./view/focus.js").Stroke[]}} painted where errors count more */
+  setFocus({ frame, strokes }) {
+    if (frame !== this.frame) return;
+    const spelled = JSON.stringify(strokes);
+    if (spelled === this.strokes) return;
+    this.strokes = spelled;
+    this.painter.setSheet(focusSheet(strokes, this.size));
+    this.repaint();
   }
 
   get isPlaying() {
@@ -254,8 +266,9 @@ export class Stage {
     this.isDirty = true;
     requestAnimationFrame(() => {
       this.isDirty = false;
-      const mesh = this.isVeiled ? 0 : this.opacities.mesh;
-      this.painter.paint(this.camera, this.size, { ...this.opacities, mesh });
+      const { mesh, painted } = this.opacities;
+      const over = this.isVeiled ? { mesh: 0, painted: 0 } : { mesh, painted };
+      this.painter.paint(this.camera, this.size, { ...this.opacities, ...over });
       this.overlay.paint(this.camera, this.mesh, this.shown());
       this.painted();
     });

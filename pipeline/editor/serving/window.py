@@ -18,6 +18,7 @@ from pipeline.editor.serving.guard import shown
 from pipeline.editor.serving.pace import Pace
 from pipeline.editor.serving.studio import Studio
 from pipeline.editor.wire.asked import Asked, AskError, read_asked
+from pipeline.editor.wire.facts import strokes_told
 from pipeline.editor.wire.packed import packed_mesh, packed_pixels, packed_work
 from pipeline.options.look import Look
 from warp_kernels.errors import TrimotionError
@@ -94,7 +95,10 @@ class Window:
 
     async def show_mesh(self) -> None:
         """Show the mesh of the frame."""
-        self.show("mesh", await self.studio.do(self._mesh, self.frame, self.view))
+        frame, view = self.frame, self.view
+        self.show("mesh", await self.studio.do(self._mesh, frame, view))
+        strokes = await self.studio.do(self.studio.session.focus, frame, view)
+        self.tell({"tell": "focus", "frame": frame, "strokes": strokes_told(strokes)})
 
     def want_drawn(self) -> None:
         """Have the frame drawn, soon: of what is asked for meanwhile the last counts."""

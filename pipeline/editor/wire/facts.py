@@ -1,10 +1,12 @@
 """What a window is told when it opens: the job, its frames, the styles."""
 
+from collections.abc import Sequence
 from typing import Any
 
 from pipeline.editor.bench.session import Session
 from pipeline.options.members import parameters
 from pipeline.options.values import kind_of
+from stages.masks.area import Stroke
 from warp_kernels.errors import OptionError
 from warp_kernels.styles import STYLES
 
@@ -58,6 +60,23 @@ def style_facts() -> dict[str, Any]:
         told = [_parameter(field) for field in parameters(cls)]
         found[name] = {"summary": summary, "parameters": told}
     return found
+
+
+def strokes_told(strokes: Sequence[Stroke]) -> list[dict[str, Any]]:
+    """Strokes as a window draws them.
+
+    Args:
+        strokes: Those of one frame.
+    """
+    return [
+        {
+            "at": None if stroke.area.polygon else list(stroke.area.at),
+            "radius": stroke.area.radius,
+            "polygon": list(stroke.area.polygon),
+            "strength": stroke.strength,
+        }
+        for stroke in strokes
+    ]
 
 
 def _parameter(field: Any) -> dict[str, Any]:

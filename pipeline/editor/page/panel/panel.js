@@ -15,11 +15,12 @@ const percent = (value) => `${Math.round(100 * value)} %`;
  * @param {Stage} stage
  */
 function viewSection(stage) {
-  /** @type {["picture" | "drawn" | "errors" | "mesh", string, string][]} */
+  /** @type {["picture" | "drawn" | "errors" | "painted" | "mesh", string, string][]} */
   const layers = [
     ["picture", "Picture", "The frame of the source"],
     ["drawn", "Style", "The frame as the film will show it"],
     ["errors", "Errors", "Where triangles differ from the picture: dark little, bright much"],
+    ["painted", "Focus", "Where focus is painted in this frame: blue"],
     ["mesh", "Mesh", "Edges and vertices; what is pinned is yellow (Tab)"],
   ];
   const rows = layers.map(([name, label, title]) => {

@@ -2,7 +2,7 @@ import { DOTS, ERRORS, LINES, PICTURE } from "./shaders.js";
 
 /**
  * @typedef {import("../mesh/mesh.js").Mesh} Mesh
- * @typedef {{picture: number, drawn: number, errors: number, mesh: number}} Opacities
+ * @typedef {{picture: number, drawn: number, errors: number, painted: number, mesh: number}} Opacities
  * @typedef {{program: WebGLProgram, at: (name: string) => WebGLUniformLocation | null}} Program
  */
 
@@ -49,11 +49,32 @@ export class Painter {
     const { gl } = this;
     this.news += 1;
     if (name === "drawn") this.isOpaque = head.channels === 3;
+    this.fit(head.channels === 4 ? gl.RGBA : gl.RGB, name, (format) => {
+      gl.texImage2D(gl.TEXTURE_2D, 0, format, head.columns, head.rows, 0, format, gl.UNSIGNED_BYTE, arrays.pixels);
+    });
+  }
+
+  /** @param {HTMLCanvasElement | null} sheet what lies over the pictures; null for nothing */
+  setSheet(sheet) {
+    const { gl } = this;
+    this.news += 1;
+    if (!sheet) gl.deleteTexture(this.textures.painted ?? null);
+    if (!sheet) delete this.textures.painted;
+    else this.fit(gl.RGBA, "painted", (format) => gl.texImage2D(gl.TEXTURE_2D, 0, format, format, gl.UNSIGNED_BYTE, sheet));
+  }
+
+  /**
+   * Fill a texture.
+   * @param {number} format
+   * @param {string} name
+   * @param {(format: number) => void} filled
+   */
+  fit(format, name, filled) {
+    const { gl } = this;
     const texture = (this.textures[name] ??= /** @type {WebGLTexture} */ (gl.createTexture()));
-    const format = head.channels === 4 ? gl.RGBA : gl.RGB;
     gl.bindTexture(gl.TEXTURE_2D, texture);
     gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
-    gl.texImage2D(gl.TEXTURE_2D, 0, format, head.columns, head.rows, 0, format, gl.UNSIGNED_BYTE, arrays.pixels);
+    filled(format);
     gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE);
     gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE);
     gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.LINEAR);
@@ -134,6 +155,7 @@ export class Painter {
       if (this.textures[name] && opacities[name] > 0 && !isHidden) this.paintPicture(name, view, size, opacities[name]);
     }
     if (opacities.errors > 0 && this.corners) this.paintErrors(view, opacities.errors);
+    if (this.textures.painted && opacities.painted > 0) this.paintPicture("painted", view, size, opacities.painted);
     if (opacities.mesh > 0 && this.edges) this.paintMesh(view, scale, camera.zoom, opacities.mesh);
   }
 
