@@ -176,7 +176,9 @@ def seams(names: list[str]) -> None:
             )
             framing = Framing((64, 64), (64, 64), None)
             options = ExchangeOptions()
-            film = Film("seam", ".svg", (64, 64), framing, None, (Flat(),), 0, None, 1, options)
+            film = Film(
+                "seam", ".svg", (64, 64), framing, None, (Flat(),), 0, None, 1, None, options
+            )
             one = Svg(film)
             one.add(Figure(snapshot, 0, Fraction(0), paint_of(snapshot)))
             one.save(svg)

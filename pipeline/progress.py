@@ -64,6 +64,7 @@ class Progress:
     def __init__(self, *, verbose: bool = False) -> None:
         self._verbose = verbose
         self._start = time.perf_counter()
+        self._warned: set[str] = set()
 
     def frame(self, done: int, total: int | None, triangles: int, rmse: float) -> None:
         """Tell that a frame is finished.
@@ -107,7 +108,12 @@ class Progress:
             self._print(f"trimotion: note: {text}")
 
     def warn(self, text: str) -> None:
-        """Tell something that the user has to know."""
+        """Tell something that the user has to know, once: a result repeats what was told before."""
+        if text not in self._warned:
+            self._warned.add(text)
+            self._warn(text)
+
+    def _warn(self, text: str) -> None:
         self._print(f"trimotion: warning: {text}")
 
     def finish(self, summary: Summary) -> None:
@@ -324,10 +330,10 @@ class JsonProgress(Progress):
         """Write a note; programs can tell what they want to know."""
         self._write("note", text=text)
 
-    def warn(self, text: str) -> None:
+    def _warn(self, text: str) -> None:
         """Write a warning, on standard error as well."""
         self._write("warning", text=text)
-        super().warn(text)
+        super()._warn(text)
 
     def finish(self, summary: Summary) -> None:
         """Write the summary."""

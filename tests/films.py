@@ -37,6 +37,7 @@ def film_of(ending: str, style: str = "flat", frames: int | None = None, **optio
         degree=STYLES[style]().degree,
         rate=RATE,
         frames=frames,
+        triangles=None,
         options=ExchangeOptions(**options),
     )
 

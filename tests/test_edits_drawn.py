@@ -62,6 +62,21 @@ def test_strokes_of_one_style_are_one_region() -> None:
     assert not painted_regions(EditLog((EDGES,)), frames={0, 1}).regions
 
 
+def test_what_cannot_be_drawn_is_told_before_the_work(
+    tmp_path: Path, capsys: pytest.CaptureFixture
+) -> None:
+    """Once, as a warning: a film may take hours until then."""
+    clip, log = write_clip(tmp_path / "in.mp4"), tmp_path / "log.jsonl"
+    write_log(EditLog((EDGES, TextureRegion(frame=2, polygon=LEFT, file="gone.png"))), log)
+    options = ["--edits", str(log), "--frames", "0-2", *QUICK_FLAGS]
+    for command, target in (("solve", "a.mtrk"), ("animate", "a.mp4")):
+        assert main([command, str(clip), "-o", str(tmp_path / target), *options]) == 0
+        first, *rest = capsys.readouterr().err.splitlines()
+        assert first.startswith("trimotion: warning: edit 2 (texture_region in frame 2) was left")
+        assert first.count("gone.png") == first.count("no such file") == 1
+        assert not any("gone.png" in line for line in rest)
+
+
 @pytest.mark.parametrize(
     ("edit", "told"),
     [

@@ -3,12 +3,14 @@
 import os
 import subprocess
 import sys
+from dataclasses import fields
 from pathlib import Path
 
 import pytest
 
 import trimotion
 from stages.exchange import FORMATS, format_of
+from stages.exchange.exchange_options import ExchangeOptions
 from tests.tracks import solve_to, write_clip
 from trimotion import OptionError, OutputError
 
@@ -44,6 +46,8 @@ def track(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def style_of(ending: str) -> str:
     """One that the format can hold."""
+    if ending not in FORMATS:
+        return "flat"
     return next(one for one in ("flat", "edges") if one in format_of(f"a{ending}").styles)
 
 
@@ -73,6 +77,51 @@ def test_other_endings_are_told_those_that_are_there(track: Path, tmp_path: Path
     for name in ("a.fbx", "a_##.fbx", "a"):
         said = told(track, tmp_path / name)
         assert all(ending in said for ending in FORMATS)
+
+
+GIVEN = {
+    "svg_precision": 3,
+    "svg_merge": True,
+    "svg_gradients": "plain",
+    "mm": 20.0,
+    "relief": "0.1",
+    "lottie_limit": 40,
+    "usd_single": True,
+}
+"""A value of each option of shapes that is not its default."""
+
+
+def test_options_that_change_nothing_are_refused(track: Path, tmp_path: Path) -> None:
+    """They were silently ignored: `--usd-single` with a film."""
+    for option in fields(ExchangeOptions):
+        given = {option.name: GIVEN[option.name]}
+        for ending in (".png", ".jpg", *(set(FORMATS) - set(option.metadata["endings"]))):
+            said = told(track, tmp_path / f"a{ending}", styles=style_of(ending), **given)
+            assert said.startswith(option.name)
+            assert f": means nothing in {ending}, only in " in said
+        for ending in option.metadata["endings"]:
+            ExchangeOptions(**given).refuse_idle(ending)
+    for ending, given in ((".png", {"crf": 20}), (".jpg", {"encoder_preset": "slow"})):
+        assert "leave it out" in told(track, tmp_path / f"a{ending}", **given)
+    for given in ({"samples": 4}, {"background": "red"}):
+        assert f"{next(iter(given))}: .ply" in told(track, tmp_path / "a.ply", **given)
+
+
+def test_too_many_triangles_for_players_are_told_before_they_are_solved(tmp_path: Path) -> None:
+    source = write_clip(tmp_path / "in.mp4")
+    for jobs in (1, 2):
+        done: list[object] = []
+        with pytest.raises(OptionError, match=r"40 triangles.* use triangles=18, or lottie_limit"):
+            trimotion.animate(
+                source,
+                tmp_path / "a.json",
+                triangles=40,
+                lottie_limit=20,
+                jobs=jobs,
+                progress=done.append,
+            )
+        assert not done
+    assert [one.name for one in tmp_path.iterdir()] == ["in.mp4"]
 
 
 @pytest.mark.skipif(os.name != "posix", reason="limits of a process as POSIX has them")

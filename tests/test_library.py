@@ -25,6 +25,7 @@ PUBLIC = {"animate", "solve", "render", "measure", "triangulate"}
 TYPES = {
     "int": {int},
     "float": {float},
+    "seconds": {str, float},
     "bool": {bool},
     "tuple[int, int]": {str, tuple[int, int]},
 }

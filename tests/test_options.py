@@ -161,7 +161,7 @@ def test_member_by_name_and_by_its_own_defaults(flag: str, name: str, registry: 
         for field in dataclasses.fields(plain)
         if getattr(plain, field.name) is not None
     ]
-    spelled = parse_member(flag, ":".join([name, ",".join(pairs)]), registry)
+    spelled = parse_member(flag, ":".join([name, *filter(None, [",".join(pairs)])]), registry)
     for field in dataclasses.fields(plain):
         assert getattr(spelled, field.name) == getattr(plain, field.name)
 

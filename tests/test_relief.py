@@ -64,7 +64,7 @@ def test_other_heights_are_refused(text: str) -> None:
 
 
 def test_flat_formats_and_missing_pictures_are_refused_at_once(tmp_path: Path) -> None:
-    with pytest.raises(OptionError, match=r"--relief: .svg has no heights"):
+    with pytest.raises(OptionError, match=r"--relief: means nothing in .svg, only in .glb"):
         format_of("a.svg").check(film_of(".svg", relief="1"))
     with pytest.raises(MediaError, match="no such file"):
         format_of("a.glb").check(film_of(".glb", relief=f"1:{tmp_path / 'no.png'}"))

@@ -224,7 +224,9 @@ def test_frames_are_shown_in_turn_for_ever(track: Path) -> None:
 
 def test_a_film_that_would_be_too_large_is_told_at_its_second_frame() -> None:
     mesh, framing = random_mesh(seed=8), Framing((64, 64), (64, 64), None)
-    film = Film("in", ".svg", (64, 64), framing, None, (Flat(),), 0, None, 10**5, ExchangeOptions())
+    film = Film(
+        "in", ".svg", (64, 64), framing, None, (Flat(),), 0, None, 10**5, None, ExchangeOptions()
+    )
     one, count = Svg(film), mesh.triangle_count
     colors, zero = np.full((count, 3, 1), 90.0), np.zeros(count)
     snapshot = Snapshot(0, 0, Fraction(1), mesh, CONSTANT, colors, zero, zero.astype(np.int64))

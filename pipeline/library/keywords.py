@@ -84,7 +84,7 @@ class SolveKeywords(AnimatorKeywords, SourceKeywords, total=False):
     loop: int
     beats: Name | None
     audio_mode: Name
-    audio_offset: float
+    audio_offset: str | float
     edits: Any
     jobs: int
     cluster: str | None
@@ -121,7 +121,7 @@ class OutputKeywords(TypedDict, total=False):
     encoder_preset: str | None
     audio: bool
     audio_mode: Name
-    audio_offset: float
+    audio_offset: str | float
     report: Name | None
     overwrite: bool
     svg_precision: int

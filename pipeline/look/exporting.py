@@ -21,6 +21,7 @@ from stages.toning.choices import Choices
 from stages.toning.tone import toned
 from warp_kernels.drawing.paint import Paint
 from warp_kernels.errors import OptionError
+from warp_kernels.limits import SAMPLES
 
 
 class Exporting:
@@ -102,12 +103,15 @@ class Exporting:
             closing.callback(self._writer.close)
 
 
-def check_exporting(job: Job, info: MediaInfo) -> tuple[OutputPlan, Film]:
+def check_exporting(
+    job: Job, info: MediaInfo, triangles: int | None = None
+) -> tuple[OutputPlan, Film]:
     """Find out before any work is done whether the output can be written.
 
     Args:
         job: Says how the output looks and how it is written.
         info: The source.
+        triangles: How many a frame will have at most, as far as is known.
 
     Raises:
         OptionError: If an option does not fit the source or the format.
@@ -130,20 +134,25 @@ def check_exporting(job: Job, info: MediaInfo) -> tuple[OutputPlan, Film]:
         degree=look.fitted(model).degree,
         rate=None if info.kind == "image" else info.average_rate,
         frames=1 if frames.is_single or is_numbered else expected_frames(frames, info),
+        triangles=triangles,
         options=job.output.exchange,
     )
-    format_of(job.output.path).check(film)
+    holder = format_of(job.output.path)
+    if look.background is not None and not holder.is_drawn:
+        raise OptionError(f"--background: {ending} has no ground; leave it out")
+    holder.check(film)
     plan = check_output(job.output.path, info, framing.canvas, job.output.encode, frames)
     return plan, film
 
 
 def _refuse_time(look: Look, ending: str) -> None:
-    """Refuse what mixes looks in one frame: pictures can, shapes cannot."""
+    """Refuse what mixes looks in one frame: pictures can, shapes cannot. They have no samples."""
     for option, is_given in (
         ("--timeline", look.timeline is not None),
         ("--region", bool(look.regions)),
         ("--move", bool(look.moves)),
         ("--blend", look.blend > 0),
+        ("--samples", look.samples != SAMPLES),
     ):
         if is_given:
             raise OptionError(f"{option}: {ending} cannot hold it; leave it out, or use .png")

@@ -3,10 +3,9 @@
 from pipeline.look.drawing import Drawing, check_drawing
 from pipeline.look.exporting import Exporting, check_exporting
 from pipeline.options.job import Job
-from stages.exchange import is_exchange
+from stages.exchange import ending_of, is_exchange
 from stages.media import MediaInfo
 from warp_kernels.device.device import Device
-from warp_kernels.errors import OptionError
 
 
 def open_drawing(job: Job, info: MediaInfo, device: Device) -> Drawing | Exporting:
@@ -26,12 +25,13 @@ def open_drawing(job: Job, info: MediaInfo, device: Device) -> Drawing | Exporti
     return Drawing(job, info, device)
 
 
-def check_output_of(job: Job, info: MediaInfo) -> None:
+def check_output_of(job: Job, info: MediaInfo, triangles: int | None = None) -> None:
     """Find out before any work is done whether the output of a job can be written.
 
     Args:
         job: Says how the output looks and how it is written.
         info: The source.
+        triangles: How many a frame will have at most, as far as is known.
 
     Raises:
         OptionError: If an option does not fit the source or the format.
@@ -39,10 +39,8 @@ def check_output_of(job: Job, info: MediaInfo) -> None:
         OutputError: If the output cannot be written.
     """
     if job.output.path is not None and is_exchange(job.output.path):
-        check_exporting(job, info)
+        check_exporting(job, info, triangles)
     else:
-        if job.output.path is not None and job.output.exchange.relief is not None:
-            raise OptionError(
-                f"--relief: {job.output.path} has no heights; use .glb, .obj, .ply or .usd"
-            )
+        if job.output.path is not None:
+            job.output.exchange.refuse_idle(ending_of(job.output.path))
         check_drawing(job, info)

@@ -10,7 +10,7 @@ from time import perf_counter
 
 import numpy as np
 
-from pipeline.edit_log.painted_regions import painted_regions
+from pipeline.edit_log.painted_regions import PaintedRegions, painted_regions
 from pipeline.look.outputs import check_output_of
 from pipeline.look.region_masks import check_followed
 from pipeline.look.render_job import render_job
@@ -60,7 +60,7 @@ def animate(job: Job, progress: Progress, runner: RangeRunner | None = None) -> 
     job = with_course(job)
     job = replace(job, solve=with_seam(job.solve))
     with alone(job.output.path, job.output.track):
-        is_followed = job.look.followed or painted_regions(job.solve.edits).regions
+        is_followed = job.look.followed or _painted(job.solve, progress).regions
         if runner.places > 1 or is_followed or job.solve.seam.over:
             return _solved_then_drawn(job, progress, runner)
         return with_unreached(job.solve, convert(job, job.fitted, progress))
@@ -92,7 +92,16 @@ def solve(
     """
     runner, options = runner or runner_of(run), with_seam(options)
     with alone(output.track):
+        _painted(options, progress)
         return _solved(options, output, run, progress, fitted, runner)
+
+
+def _painted(options: SolveOptions, progress: Progress) -> PaintedRegions:
+    """What edits give a style; what of it cannot be drawn is told before hours of work."""
+    found = painted_regions(options.edits)
+    for text in found.refused:
+        progress.warn(text)
+    return found
 
 
 def _solved(
@@ -177,7 +186,7 @@ def _solved_then_drawn(job: Job, progress: Progress, runner: RangeRunner) -> Ani
     refuse_track(options.source)
     info = probe(options.source, read=options.read)
     check_followed(job, info)
-    check_output_of(job, info)
+    check_output_of(job, info, options.triangulate.refine.most)
     if output.track is None and output.resume:
         raise OptionError("--resume: nothing is left to go on with; name a --track FILE.mtrk")
     track = output.track or PendingFile(output.path).path.with_suffix(ENDING)

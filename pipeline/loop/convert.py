@@ -61,7 +61,7 @@ def convert(job: Job, fitted: ColorModel, progress: Progress) -> Animated:
         check_cuts(options.cuts, options.source, info)
         check_edits(options, info)
         if draws:
-            check_output_of(job, info)
+            check_output_of(job, info, options.triangulate.refine.most)
         device = Device(job.run.device, job.run.threads, progress.kernels)
         count = options.triangulate.refine.triangles
         step, factor = options.frame_range.step, options.course.focus

@@ -209,7 +209,9 @@ def _option(field: Field[Any], group: str) -> Option:
     if kind == "bool" and default:
         flag, text = f"no-{flag}", f"do not {text}"
     elif kind != "bool" and default not in (None, ()):
-        text += f" (default: {default:g})" if kind == "float" else f" (default: {default})"
+        text += (
+            f" (default: {default:g})" if isinstance(default, float) else f" (default: {default})"
+        )
     usual = {"int": "N", "float": "X"}.get(kind, field.name.split("_")[-1].upper())
     metavar = said.get("metavar", "|".join(registry or choices or [usual]))
     is_single = bool(said.get("is_single"))

@@ -20,10 +20,12 @@ def parse_member(flag: str, text: str, registry: Mapping[str, type]) -> Any:
         OptionError: If the name, a parameter or a value is not allowed.
         MediaError: If a picture that is a parameter cannot be read.
     """
-    name, _, rest = text.partition(":")
+    name, colon, rest = text.partition(":")
     try:
         if name not in registry:
             raise OptionError(_no_member(text, registry))
+        if colon and not rest.strip():
+            raise OptionError(f"nothing follows the colon; write {name}, or {name}:KEY=VALUE,...")
         kinds = {field.name: kind_of(field) for field in parameters(registry[name])}
         return registry[name](**_values(name, rest, kinds))
     except (OptionError, ArgumentTypeError) as error:

@@ -14,10 +14,22 @@ from stages.look.output_size import FORM, parse_size
 from warp_kernels.registry import imported
 
 _SWITCHES = {"true": True, "yes": True, "1": True, "false": False, "no": False, "0": False}
+_SECONDS = re.compile(r"(.+?) *(ms|s|sec|seconds?)?")
+
+
+def _seconds(text: str) -> float:
+    """Seconds of a number, with or without its unit."""
+    match = _SECONDS.fullmatch(text.strip())
+    if match is None:
+        raise ValueError(text)
+    return float(match[1]) / (1000.0 if match[2] == "ms" else 1.0)
+
+
 _RULES: dict[str, tuple[Callable[[str], Any], str, str]] = {
     "bool": (lambda text: _SWITCHES[text.lower()], "true or false", "true or false"),
     "int": (int, "a whole number", "one such as 12"),
     "float": (float, "a number", "one such as 0.5"),
+    "seconds": (_seconds, "a time", "seconds, such as 2, 0.5s or -250ms"),
     "Fraction": (Fraction, "a rate", "one such as 24 or 30000/1001"),
     "tuple[int, int]": (parse_size, "a size", FORM),
 }
@@ -34,7 +46,8 @@ NAMES: dict[str, Callable[[str], Any]] = {
 def kind_of(field: Field[Any]) -> str:
     """The type of a field as it is written, such as `int`, but for its modules and None.
 
-    Arrays that are not read as pictures say in their metadata what `reads` them.
+    Arrays that are not read as pictures, and numbers of seconds, say in their metadata what `reads`
+    them.
     """
     if "reads" in field.metadata:
         return str(field.metadata["reads"])

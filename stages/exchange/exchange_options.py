@@ -1,6 +1,6 @@
 """What decides how shapes are written."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 
 from stages.exchange.relief import Relief
@@ -13,6 +13,8 @@ MAX_WIDTH = 10_000
 """Millimetres; more than plotters have."""
 GRADIENTS = ("exact", "plain")
 """How linear colours can be written."""
+USD = (".usd", ".usda", ".usdc")
+"""Endings of USD."""
 
 
 @dataclass(frozen=True)
@@ -25,12 +27,18 @@ class ExchangeOptions:
 
     svg_precision: int = field(
         default=2,
-        metadata={"help": "decimals of positions in .svg: 2 is off by 0.005 px at most"},
+        metadata={
+            "help": "decimals of positions in .svg: 2 is off by 0.005 px at most",
+            "endings": (".svg",),
+        },
     )
     """Decimals of positions."""
     svg_merge: bool = field(
         default=False,
-        metadata={"help": "make one path of neighbours that have the same colour in .svg and .dxf"},
+        metadata={
+            "help": "make one path of neighbours that have the same colour in .svg and .dxf",
+            "endings": (".svg", ".dxf"),
+        },
     )
     """Whether neighbours of one colour become one path."""
 
@@ -40,6 +48,7 @@ class ExchangeOptions:
             "help": "gradients in .svg: exact adds up three layers, one for each channel, plain is "
             "the nearest single gradient",
             "choices": GRADIENTS,
+            "endings": (".svg",),
         },
     )
     """How linear colours are written."""
@@ -50,6 +59,7 @@ class ExchangeOptions:
             "help": "width of .svg and .dxf in millimetres, for plotters and cutters; 0 for a size "
             "in pixels, each a millimetre in .dxf",
             "metavar": "MM",
+            "endings": (".svg", ".dxf"),
         },
     )
     """Width of the output on paper [mm], or 0."""
@@ -59,13 +69,17 @@ class ExchangeOptions:
             "help": "brightness, or a picture of depth, as height in 3D formats: from black to "
             "white so many of the picture's longer side",
             "metavar": "X[:FILE]",
+            "endings": (".glb", ".obj", ".ply", *USD),
         },
     )
     """Heights in 3D formats, as `Relief.parse` reads them; None for flat ones."""
 
     lottie_limit: int = field(
         default=500,
-        metadata={"help": "most triangles of a frame in .json; players become slow beyond"},
+        metadata={
+            "help": "most triangles of a frame in .json; players become slow beyond",
+            "endings": (".json",),
+        },
     )
     """Most triangles of a frame in Lottie."""
 
@@ -73,7 +87,8 @@ class ExchangeOptions:
         default=False,
         metadata={
             "help": "one mesh in .usd, whose triangles change in time, instead of one for each run "
-            "of frames in which none comes or goes; for programs that can read it"
+            "of frames in which none comes or goes; for programs that can read it",
+            "endings": USD,
         },
     )
     """Whether USD has one mesh for the whole clip."""
@@ -99,3 +114,22 @@ class ExchangeOptions:
             raise OptionError(
                 f"--svg-gradients {self.svg_gradients}: choose from {', '.join(GRADIENTS)}"
             )
+
+    def refuse_idle(self, ending: str) -> None:
+        """Refuse options that change nothing of an output: who gives them means another one.
+
+        Args:
+            ending: That of the output, in lower case, with its dot.
+
+        Raises:
+            OptionError: If there is one.
+        """
+        for option in fields(self):
+            known = option.metadata["endings"]
+            if ending not in known and getattr(self, option.name) != option.default:
+                *others, last = known
+                named = f"{', '.join(others)} and {last}" if others else last
+                raise OptionError(
+                    f"--{option.name.replace('_', '-')}: means nothing in {ending or 'it'}, only "
+                    f"in {named}; leave it out"
+                )

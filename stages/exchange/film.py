@@ -30,6 +30,8 @@ class Film:
     """Frames per second, on the average; None for a still or if unknown."""
     frames: int | None
     """How many frames a file holds, as far as is known."""
+    triangles: int | None
+    """How many triangles a frame will have; None if its picture decides that, or not known yet."""
     options: ExchangeOptions
     """How shapes are written."""
 

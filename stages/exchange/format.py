@@ -28,8 +28,6 @@ class Format:
     is_drawn: ClassVar[bool] = False
     """Whether it has a size on paper or screen, so that `--size` and what goes with it mean
     something; else positions are those in the source."""
-    has_heights: ClassVar[bool] = False
-    """Whether it has a third dimension."""
 
     def __init__(self, film: Film) -> None:
         self.film = film
@@ -52,11 +50,8 @@ class Format:
                 f"--size, --scale: positions in {film.ending} are pixels of the source; leave them "
                 "out"
             )
+        film.options.refuse_idle(film.ending)
         relief = film.options.heights
-        if relief is not None and not cls.has_heights:
-            raise OptionError(
-                f"--relief: {film.ending} has no heights; use .glb, .obj, .ply or .usd"
-            )
         if relief is not None and relief.path is not None:
             depth_of(relief.path)
         if film.degree > cls.most_degree:

@@ -58,6 +58,11 @@ class RefineOptions:
             )
 
     @property
+    def most(self) -> int | None:
+        """Triangles of a picture, if it is not the picture that decides; held ones come on top."""
+        return self.triangles if self.error is None and self.quality is None else None
+
+    @property
     def largest_area(self) -> float:
         """Area that no triangle may exceed [px^2]."""
         return math.inf if self.max_area is None else self.max_area

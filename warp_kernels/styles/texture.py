@@ -56,4 +56,5 @@ class Texture(Style):
         except TrimotionError as error:
             known = ", ".join(PICTURES)
             name = f"{HOLDS_IT}..." if self.file.startswith(HOLDS_IT) else self.file
-            raise OptionError(f"texture:{name}: {error}; or choose from {known}") from error
+            told = str(error).removeprefix(f"{self.file}: ")
+            raise OptionError(f"texture:{name}: {told}, or choose from {known}") from error

@@ -47,18 +47,14 @@ class Lottie(Format):
 
     @classmethod
     def check(cls, film: Film) -> None:
-        """As every format, and one style only."""
+        """As every format, one style only, and no more triangles than players show."""
         super().check(film)
         refuse_stacks(film)
+        _refuse_many(film, film.triangles or 0)
 
     def add(self, figure: Figure) -> None:
         """Take a frame."""
-        count, most = figure.mesh.triangle_count, self.film.options.lottie_limit
-        if count > most:
-            raise OptionError(
-                f"{self.film.ending}: {count} triangles, and players of Lottie become slow beyond "
-                f"{most}; use --triangles {most - most // 10}, or --lottie-limit {count}"
-            )
+        _refuse_many(self.film, figure.mesh.triangle_count)
         self._lives.add(figure)
         self._times.append(figure.time)
         areas = figure.mesh.areas
@@ -102,6 +98,16 @@ class Lottie(Format):
             "r": {"a": 0, "k": 0},
         }
         return _group("ground", sheet, {"a": 0, "k": _channels(self._sum / self._area)})
+
+
+def _refuse_many(film: Film, count: int) -> None:
+    """Refuse more triangles than players show."""
+    most = film.options.lottie_limit
+    if count > most:
+        raise OptionError(
+            f"{film.ending}: {count} triangles, and players of Lottie become slow beyond {most}; "
+            f"use --triangles {most - most // 10}, or --lottie-limit {count}"
+        )
 
 
 def _layer(name: str, begin: float, end: float, shapes: list[dict[str, Any]]) -> dict[str, Any]:

@@ -43,7 +43,6 @@ class Gltf(Format):
 
     styles: ClassVar[tuple[str, ...]] = HELD
     most_degree: ClassVar[int] = 1
-    has_heights: ClassVar[bool] = True
 
     def __init__(self, film: Film) -> None:
         super().__init__(film)

@@ -27,7 +27,6 @@ class Usd(Format):
 
     styles: ClassVar[tuple[str, ...]] = HELD
     most_degree: ClassVar[int] = 1
-    has_heights: ClassVar[bool] = True
 
     def __init__(self, film: Film) -> None:
         super().__init__(film)

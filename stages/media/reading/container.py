@@ -93,7 +93,9 @@ def _check_regular(path: Path) -> None:
         remedy = "check the name"
         if re.search(r"#|%\d*d", path.name):
             remedy += "; numbered stills are written name_####.png, or name_%01d.png without zeros"
-        raise MediaError(path, f"no such file ({_system_reason(error)})", remedy) from error
+        is_missing = isinstance(error, FileNotFoundError)
+        why = "" if is_missing else f" ({_system_reason(error)})"
+        raise MediaError(path, f"no such file{why}", remedy) from error
     if path.is_dir():
         raise MediaError(path, "is a folder", "give a file, or a pattern such as name_####.png")
     if not path.is_file():

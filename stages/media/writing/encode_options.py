@@ -64,6 +64,7 @@ class EncodeOptions:
             "help": "how much later than the film the sound of --audio FILE begins, in seconds; "
             "less than 0 to begin within it",
             "metavar": "SECONDS",
+            "reads": "seconds",
         },
     )
     overwrite: bool = field(default=False, metadata={"help": "replace an existing output"})

@@ -59,6 +59,8 @@ class OutputPlan:
         return self.pixel_format.startswith(halved)
 
 
+LOSSY = (".jpg", ".jpeg", ".webp")
+"""Endings of stills that have a quality."""
 WHOLE = FrameRange()
 """Every frame."""
 
@@ -194,6 +196,14 @@ def _plan_stills(
         raise OptionError(
             f"codec {options.codec}, pixel format {options.pixel_format}: stills have none to "
             "choose; leave these options out"
+        )
+    if options.encoder_preset is not None:
+        raise OptionError(
+            f"encoder preset {options.encoder_preset}: {target.suffix} has none; leave it out"
+        )
+    if options.crf is not None and target.suffix.lower() not in LOSSY:
+        raise OptionError(
+            f"crf {options.crf}: {target.suffix} loses nothing and has no quality; leave it out"
         )
     if options.crf is not None and not 0 <= options.crf <= 51:
         raise OptionError(f"crf {options.crf}: choose a value from 0 to 51")
