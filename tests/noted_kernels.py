@@ -18,6 +18,7 @@ from warp_kernels.drawing.moved import Moved
 from warp_kernels.drawing.paint import Paint
 from warp_kernels.energy.color_extremes import Extremes
 from warp_kernels.energy.nearby_colors import Nearby
+from warp_kernels.energy.plain_colors import PlainColors
 from warp_kernels.energy.sums import SUMS
 from warp_kernels.energy.topology_survey import Survey
 from warp_kernels.energy.workspace import Workspace
@@ -77,6 +78,8 @@ def note_solver(device: Device, kinds: Sequence[tuple[str, str, bool]]) -> None:
         nothing = np.zeros((1, 3, model.term_count)), np.zeros(1), np.zeros((1, 2, 3), np.uint8)
         Nearby(workspace).measure(*nothing)
         Extremes(workspace).measure(1)
+        if model.degree == 0:
+            PlainColors(workspace).measure(np.zeros((1, 3)), np.zeros(1, dtype=bool))
         if sums == "edges":
             survey = Survey(workspace)
             survey.load_topology(np.zeros(3, int), np.zeros(3, int))

@@ -142,7 +142,7 @@ def test_few_pixels_do_not_take_a_large_triangle_along(device: str) -> None:
     triangulator = Triangulator(Device(device, 2), (64, 64), TriangulateOptions())
     snapshot = triangulator.fit(frame_of(picture), mesh)
     assert (snapshot.coefficients > 190).all()
-    assert snapshot.rmse < picture.std()
+    assert snapshot.rmse < 1.01 * picture.std()  # both triangles have the bright half's own colour
 
 
 @pytest.mark.parametrize("name", STYLES)

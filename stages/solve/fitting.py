@@ -1,4 +1,5 @@
-"""Colours of a mesh that stays as it is: fitted, steadied, and kept within what is near by."""
+"""Colours of a mesh that stays as it is: fitted, steadied, led to those of plain
+ground, and kept within what is near by."""
 
 import numpy as np
 
@@ -10,7 +11,9 @@ from stages.snapshot import Snapshot
 from stages.solve.color_limits import Limiter
 from stages.solve.color_owners import color_owners
 from stages.solve.grid import colors_through, rounded_energies, shades, tightened
+from stages.solve.plain_colors import plainer
 from stages.solve.steady_colors import steadied
+from warp_kernels.energy.plain_colors import PlainColors
 from warp_kernels.energy.workspace import Workspace
 
 
@@ -25,6 +28,7 @@ class Fitting:
         self.workspace = workspace
         """Where it is done."""
         self._limiter = Limiter(workspace)
+        self._plain = PlainColors(workspace) if workspace.model.degree == 0 else None
 
     def snapshot(
         self, frame: Frame, mesh: Mesh, earlier: Snapshot | None = None, locks: Locks = NO_LOCKS
@@ -41,6 +45,8 @@ class Fitting:
         coefficients, energies, counts = self.workspace.fit()
         if earlier is not None:
             coefficients, energies = steadied(earlier, mesh, counts, coefficients, energies)
+        if self._plain is not None:
+            coefficients, energies = plainer(self._plain, counts, coefficients, energies)
         coefficients, energies, limits = self._limiter.limit(mesh, coefficients, energies)
         model = self.workspace.model
         values = shades(mesh, model, coefficients)

@@ -12,6 +12,7 @@ from warp_kernels.energy.color_extremes import find_extremes
 from warp_kernels.energy.fit import fit_kernel
 from warp_kernels.energy.gradient_descent import descend
 from warp_kernels.energy.nearby_colors import nearby_kernel
+from warp_kernels.energy.plain_colors import find_plain_colors
 from warp_kernels.energy.topology_gains import CHANGES
 from warp_kernels.energy.variant_energies import energy_kernel
 from warp_kernels.moments.edge_moments import edge_kernel
@@ -50,6 +51,8 @@ def limiting_kernels(device: Device, model: ColorModel, drawn: ColorModel) -> li
     looking = [nearby_kernel(drawn)]
     if drawn.degree > 0:
         looking.append(find_extremes)
+    if model.degree == 0:
+        looking.append(find_plain_colors)
     if model.degree == 0 and not device.is_cuda:
         looking += [sift, widen_bands]
     if drawn is model:
