@@ -18,7 +18,7 @@ from typing import Any, NoReturn
 from pipeline.commands.crash_watch import watch_for_crashes
 from pipeline.commands.grammar import build_parser
 from pipeline.commands.inputs import inputs_of, joined, take
-from pipeline.kept_memory import keep_memory
+from pipeline.kept_memory import keep_memory, release_spare
 from pipeline.printable import one_line, printable
 
 INTERRUPTED = 130
@@ -60,6 +60,7 @@ def main(argv: Sequence[str] | None = None, commands: "Mapping[str, Command] | N
             code = (commands or COMMANDS)[arguments.command](arguments)
             sys.stdout.flush()
     except BaseException as error:  # one place where every failure becomes a line and a code
+        release_spare()
         if arguments.debug:
             traceback.print_exc()
         return _report(error, arguments)
@@ -302,6 +303,8 @@ COMMANDS: dict[str, Command] = {
 }
 """What each subcommand runs."""
 
+_OF_FILES = (FileNotFoundError, PermissionError, IsADirectoryError, NotADirectoryError)
+"""What is a file's own fault, however little memory is left."""
 COMPILING = ("animate", "solve", "render")
 """Those that always launch kernels."""
 
@@ -320,7 +323,7 @@ def _report(error: BaseException, arguments: argparse.Namespace) -> int:
     from warp_kernels.errors import OptionError, TrimotionError
 
     # Under a limit libraries fail in ways of their own, and options that would fit do not.
-    if isinstance(error, OptionError) and is_limit_near():
+    if (isinstance(error, OptionError) or _is_of_library(error)) and is_limit_near():
         return _fail(f"out of memory ({error}); {MORE_MEMORY}", 1)
     if isinstance(error, TrimotionError):
         return _fail(str(error), error.exit_code)
@@ -340,6 +343,14 @@ def _report(error: BaseException, arguments: argparse.Namespace) -> int:
         reason = error.strerror.lower()
         return _fail(f"{error.filename}: {reason}; check the place, its rights and free space", 1)
     return _fail(f"internal error ({kind}: {error}); run again with --debug and report it", 1)
+
+
+def _is_of_library(error: BaseException) -> bool:
+    """Whether a file is blamed for what a library said, which may have had another reason."""
+    from warp_kernels.errors import MediaError, OutputError
+
+    told_apart = isinstance(error, OutputError) or isinstance(error.__cause__, _OF_FILES)
+    return isinstance(error, MediaError) and error.__cause__ is not None and not told_apart
 
 
 def _left_over(arguments: argparse.Namespace) -> str:

@@ -35,6 +35,22 @@ def test_a_crash_is_one_line(crash: str) -> None:
     assert "convert" in line
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems do not tell")
+def test_a_crash_near_a_limit_is_told_as_memory() -> None:
+    """Libraries that do not look whether they got memory crash where they got none."""
+    limit = "import resource as r; r.setrlimit(r.RLIMIT_AS, ({0}, {0})); "
+    (line,) = run(
+        "import ctypes; " + limit.format(1 << 40) + CRASHES["segmentation fault"]
+    ).stderr.splitlines()
+    assert line.startswith("trimotion: error: a library crashed (segmentation fault)")
+    held = "size = int(open('/proc/self/statm').read().split()[0]) * r.getpagesize(); "
+    near = "import ctypes, resource as r; " + held + "r.setrlimit(r.RLIMIT_AS, (size, size)); "
+    (line,) = run(near + CRASHES["segmentation fault"]).stderr.splitlines()
+    assert "a library crashed" in line
+    assert "memory" in line  # the reason, or what may be where the process ended too soon to tell
+    assert "ulimit -v" in line
+
+
 @pytest.mark.parametrize("ending", ENDINGS)
 def test_other_ends_are_silent(ending: str) -> None:
     """Whether it went well or not."""

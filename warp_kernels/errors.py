@@ -6,6 +6,7 @@
     +-- MediaError            exit 3   an input that cannot be read
     |   +-- OutputError       exit 4   an output that cannot be written
     +-- TrackError            exit 3   a mesh track that cannot be used
+    +-- ShortMemoryError      exit 1   memory has run out
 
 It lives in the lowest package because every package raises some of it and imports go downwards.
 """
@@ -57,3 +58,7 @@ class TrackError(TrimotionError):
     """A mesh track that cannot be used."""
 
     exit_code = 3
+
+
+class ShortMemoryError(TrimotionError):
+    """Memory has run out, whatever a library said of it."""

@@ -1,4 +1,4 @@
-"""Kill runs, fill disks, take files away: what is left, as a table.
+"""Kill runs, take their memory, fill disks, take files away: what is left, as a table.
 
 Run it in the root of the repository: python -m benchmarks.failures [KIND ...] [--kills 25]
 """
@@ -13,6 +13,7 @@ from time import monotonic
 from benchmarks.failures.disks import full_disks
 from benchmarks.failures.films import LENGTH, QUICK, QUIET, SHOTS, done, write_film
 from benchmarks.failures.kills import kills
+from benchmarks.failures.memory import short_memory
 from benchmarks.failures.pairs import pairs
 from benchmarks.failures.places import places
 
@@ -24,12 +25,13 @@ def main() -> None:
     """Print a line for each kind, and what went wrong."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("kinds", nargs="*", metavar="KIND", help="those that are tried")
-    parser.add_argument("--kills", type=int, default=25)
+    parser.add_argument("--kills", type=int, default=25, help="and limits of memory")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--folder", type=Path, help="where to work, in place of a temporary one")
     given = parser.parse_args()
     kinds: dict[str, Callable[[Path], Iterator[Row]]] = {
         "kills": lambda folder: kills(folder, given.kills, given.seed),
+        "memory": lambda folder: short_memory(folder, given.kills, given.seed),
         "disks": full_disks,
         "places": places,
         "pairs": pairs,

@@ -5,7 +5,7 @@ import shutil
 import signal
 import subprocess
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -86,13 +86,13 @@ def kills(given: Path, count: int, seed: int) -> Iterator[tuple[str, str]]:
         What was tried, and what is wrong; empty if nothing is.
     """
     chance = random.Random(seed)
-    wanted, seconds = _references(given)
+    wanted, seconds = whole_runs(given, COMMANDS)
     for number in range(count):
         command = COMMANDS[number % len(COMMANDS)]
         sign = SIGNALS[(number // 2) % len(SIGNALS)]
         after = chance.uniform(0.25, 1.0) * seconds[command.name]
         folder = given.parent / f"kill{number}"
-        _copy(given, folder)
+        copied(given, folder)
         problem = _killed(folder, command, sign, after, wanted[command.name])
         shutil.rmtree(folder)
         yield f"{command.name}: {sign.name} after {after:.1f} s", problem
@@ -119,8 +119,8 @@ def _killed(folder: Path, command: Command, sign: signal.Signals, after: float, 
             return f"broken output: {error}"
         if output.suffix != ".mtrk" and found != wanted:
             return "another output than that of a whole run"
-    if was_killed and sign != signal.SIGKILL and _hidden(folder):
-        return f"left {_hidden(folder)}"
+    if was_killed and sign != signal.SIGKILL and hidden_in(folder):
+        return f"left {hidden_in(folder)}"
     if not was_killed and output.exists():
         return "" if content_of(output) == wanted else "other bits"
     code, said = done([*command.words, *command.again], folder)
@@ -128,15 +128,23 @@ def _killed(folder: Path, command: Command, sign: signal.Signals, after: float, 
         return f"does not go on: {said}"
     if content_of(output) != wanted:
         return "other bits after it went on"
-    return f"left {_hidden(folder)}" if _hidden(folder) else ""
+    return f"left {hidden_in(folder)}" if hidden_in(folder) else ""
 
 
-def _references(given: Path) -> tuple[dict[str, str], dict[str, float]]:
-    """What whole runs make, and how long they take [s]."""
+def whole_runs(given: Path, commands: Sequence[Command]) -> tuple[dict[str, str], dict[str, float]]:
+    """Run commands to their ends.
+
+    Args:
+        given: As for `kills`.
+        commands: Which.
+
+    Returns:
+        By their names, what they make, and how long they take [s].
+    """
     wanted, seconds = {}, {}
-    for command in COMMANDS:
+    for command in commands:
         folder = given.parent / "whole"
-        _copy(given, folder)
+        copied(given, folder)
         begun = time.monotonic()
         code, said = done(command.words, folder)
         assert code == 0, said
@@ -146,11 +154,21 @@ def _references(given: Path) -> tuple[dict[str, str], dict[str, float]]:
     return wanted, seconds
 
 
-def _copy(given: Path, folder: Path) -> None:
+def copied(given: Path, folder: Path) -> None:
+    """Copy what is given to a new folder.
+
+    Args:
+        given: Where it is.
+        folder: Where it goes; what is there is removed.
+    """
     shutil.rmtree(folder, ignore_errors=True)
     shutil.copytree(given, folder)
 
 
-def _hidden(folder: Path) -> list[str]:
-    """What lies there under names that no user gave."""
+def hidden_in(folder: Path) -> list[str]:
+    """What lies there under names that no user gave.
+
+    Args:
+        folder: Where.
+    """
     return sorted(path.name for path in folder.iterdir() if path.name.startswith(".trimotion"))

@@ -11,6 +11,8 @@ import re
 import signal
 import sys
 
+from warp_kernels.device.memory import MORE_MEMORY, was_limit_near
+
 _REASON = re.compile(rb"Fatal Python error: ([^\n]+)")
 _kept: list[object] = []
 """The pipe's end: the fault handler only borrows it."""
@@ -22,9 +24,10 @@ def watch_for_crashes() -> None:
         return
     try:
         reading, writing = os.pipe()
+        watched = os.getpid()
         if os.fork() == 0:
             os.close(writing)
-            _report(reading)
+            _report(reading, watched)
     except OSError:
         return  # no process to be had: it goes without
     os.close(reading)
@@ -33,20 +36,30 @@ def watch_for_crashes() -> None:
     faulthandler.enable(end)
 
 
-def _report(reading: int) -> None:
+def _report(reading: int, watched: int) -> None:
     """Wait for the other process to end, and say why if it crashed."""
     try:
         signal.signal(signal.SIGINT, signal.SIG_IGN)
-        told = b""
+        told = os.read(reading, 4096)
+        short = was_limit_near(watched)  # while it still writes, if it does
         while part := os.read(reading, 4096):
             told += part
         found = _REASON.search(told)
         if found:
-            reason = found[1].decode("ascii", "replace").lower()
-            line = (
-                f"trimotion: error: a library crashed ({reason}); if it was reading a file, "
-                "convert that with another program first, and report it\n"
-            )
-            os.write(2, line.encode())
+            line = _line(found[1].decode("ascii", "replace").lower(), short)
+            os.write(2, f"trimotion: error: {line}\n".encode())
     finally:
         os._exit(0)
+
+
+def _line(reason: str, short: bool | None) -> str:
+    """What is said of a crash, with a lack of memory as its reason, as one that may be, or none."""
+    if short:
+        return f"out of memory (a library crashed: {reason}); {MORE_MEMORY}"
+    remedy = "convert that with another program first, and report it"
+    if short is None:
+        return (
+            f"a library crashed ({reason}), and memory is limited: if it ran out, {MORE_MEMORY}; "
+            f"if a file was being read, {remedy}"
+        )
+    return f"a library crashed ({reason}); if it was reading a file, {remedy}"

@@ -15,6 +15,7 @@ from pipeline.loop.result import Animated
 from pipeline.progress import Progress
 from stages.media.writing.alone import alone
 from warp_kernels.device.kernel_cache import settle_cache
+from warp_kernels.device.memory import is_out_of_memory
 from warp_kernels.errors import TrimotionError
 
 PATIENCE = 0.5
@@ -185,9 +186,10 @@ def _work(work: Work, tasks: Any, reports: Any, parent: int) -> None:
         reports.put(("error", str(error), error.exit_code))
     except KeyboardInterrupt:
         pass  # the first process tells of it
-    except MemoryError:
-        reports.put(("error", "out of memory; try fewer --jobs, or a smaller source", 1))
     except Exception as error:
+        if is_out_of_memory(error):
+            reports.put(("error", "out of memory; try fewer --jobs, or a smaller source", 1))
+            return
         kind = type(error).__name__
         text = f"internal error ({kind}: {error}); run again with --jobs 1 --debug and report it"
         reports.put(("error", text, 1))

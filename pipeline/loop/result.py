@@ -12,6 +12,7 @@ from pipeline.progress import Progress
 from pipeline.track import FrameRow
 from stages.mesh import Mesh
 from stages.metrics.changed_triangles import changed_triangles
+from warp_kernels.device.memory import refuse_without_room
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,6 +76,7 @@ class Tally:
 
     def solved(self, one: Solved) -> None:
         """Count a frame and tell of it."""
+        refuse_without_room()
         snapshot = one.snapshot
         mesh, rmse = snapshot.mesh, snapshot.rmse
         self._add(snapshot.frame_index, one.shot, mesh.triangle_count, rmse, mesh)

@@ -7,6 +7,7 @@ from stages.media.reading.container import DAMAGE
 from stages.media.reading.read_options import AS_IT_COMES, ReadOptions
 from stages.media.reading.sequence import existing_numbers
 from stages.media.reading.source import VideoSource
+from warp_kernels.device.memory import refuse_if_short
 
 
 def count_frames(path: str | Path, read: ReadOptions = AS_IT_COMES) -> int:
@@ -27,6 +28,6 @@ def count_frames(path: str | Path, read: ReadOptions = AS_IT_COMES) -> int:
         try:
             for packet in source.container.demux(source.stream):
                 count += packet.size > 0 and not packet.is_discard
-        except DAMAGE:
-            pass  # it breaks off here, as it does when it is decoded
+        except DAMAGE as error:
+            refuse_if_short(error)  # else it breaks off here, as it does when it is decoded
         return count

@@ -26,6 +26,7 @@ from stages.media.reading.read_options import AS_IT_COMES, ReadOptions
 from stages.media.reading.sequence import existing_numbers, refuse_gaps, still_frames
 from stages.media.reading.source import VideoSource
 from stages.media.timing import TimeRepair, usual_step
+from warp_kernels.device.memory import refuse_if_short, refuse_without_room
 from warp_kernels.errors import MediaError, OptionError
 
 WHOLE = FrameRange()
@@ -145,6 +146,7 @@ class Decoder:
         if (raw.width, raw.height) != size:
             self._note_once("picture size changes within the source: scaled to the first size")
         self._delivered += 1
+        refuse_without_room()
         return Frame(index, pts, info.time_base, upright(self._pixels(raw, size), shown))
 
     def _pixels(self, raw: VideoFrame, size: tuple[int, int]) -> np.ndarray:
@@ -155,6 +157,7 @@ class Decoder:
             else:
                 pixels = self._reader.read8(raw, color, size)
         except DAMAGE as error:
+            refuse_if_short(error)
             raise MediaError(
                 self._name,
                 f"pixels of format {raw.format.name} cannot be converted ({reason_of(error)})",

@@ -20,7 +20,7 @@ from stages.media.reading.pages import pages_of, with_page_first
 from stages.media.reading.picture_size import check_size, check_streams
 from stages.media.reading.read_options import AS_IT_COMES, ReadOptions
 from stages.media.reading.side_data import side_data
-from warp_kernels.device.memory import MORE_MEMORY, is_limit_near
+from warp_kernels.device.memory import refuse_if_short
 from warp_kernels.errors import MediaError, OptionError
 
 MAX_FAILURES = 10_000
@@ -244,8 +244,7 @@ class VideoSource:
             except EOFError:
                 return
             except DAMAGE as error:
-                if isinstance(error, MemoryError) and is_limit_near():
-                    raise MediaError(self.path, "out of memory", MORE_MEMORY) from error
+                refuse_if_short(error)
                 self._count(error)
                 if self.failures > MAX_FAILURES:
                     return

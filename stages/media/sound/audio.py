@@ -14,6 +14,7 @@ from av.packet import Packet
 from stages.media.reading.container import DAMAGE, open_container, reason_of
 from stages.media.sound.audio_plan import AudioPlan, Converter, add_encoder, best_audio
 from stages.media.sound.channels import Channels, channels_of
+from warp_kernels.device.memory import refuse_if_short
 
 _RESTART = Fraction(1, 2)
 """A clock that falls back by more than this has restarted [s]."""
@@ -134,6 +135,7 @@ class AudioTrack:
             try:
                 packet = next(packets, None)
             except DAMAGE as error:
+                refuse_if_short(error)
                 self.problem = f"the audio breaks off ({reason_of(error)})"
                 packet = None
             if packet is None:
@@ -215,6 +217,7 @@ class _EncodedTrack(AudioTrack):
         try:
             frames: list[Any] = packet.decode()
         except DAMAGE as error:
+            refuse_if_short(error)
             self.problem = f"damaged audio packets are left out ({reason_of(error)})"
             return
         sounds = [frame for frame in frames if isinstance(frame, AudioFrame)]
@@ -231,6 +234,7 @@ class _EncodedTrack(AudioTrack):
         try:
             made = converter.convert(frame, channels)
         except DAMAGE as error:
+            refuse_if_short(error)
             self.problem = f"audio that changes its kind is left out ({reason_of(error)})"
             return
         for converted in made:

@@ -16,6 +16,7 @@ from av.container import InputContainer, OutputContainer
 from stages.media.reading.container import DAMAGE, open_container, reason_of
 from stages.media.sound.channels import Channels, channels_of
 from stages.media.writing.codecs import Container
+from warp_kernels.device.memory import refuse_if_short
 from warp_kernels.errors import MediaError, OptionError
 
 _TRIED_PACKETS = 50
@@ -214,7 +215,8 @@ def _can_copy(stream: AudioStream, format_name: str) -> bool:
         trial.add_stream_from_template(stream)
         trial.start_encoding()
         trial.close()
-    except DAMAGE:
+    except DAMAGE as error:
+        refuse_if_short(error)
         return False
     return True
 
@@ -237,6 +239,7 @@ def _plan_conversion(
         try:
             _try(heard, plan, container)
         except DAMAGE as error:
+            refuse_if_short(error)
             reason = reason_of(error)
             continue
         if count < channels.count:
@@ -261,6 +264,7 @@ def _beginning(
                 break
             frames = packet.decode()
         except DAMAGE as error:
+            refuse_if_short(error)
             reason = reason_of(error)
             continue
         heard += [(f, channels_of(f)) for f in frames if isinstance(f, AudioFrame)]

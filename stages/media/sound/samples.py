@@ -17,6 +17,7 @@ from stages.media.reading.container import DAMAGE, choose_video, open_container,
 from stages.media.reading.probe import probe
 from stages.media.sound.audio_plan import best_audio
 from stages.media.sound.channels import channels_of
+from warp_kernels.device.memory import refuse_if_short
 from warp_kernels.errors import MediaError, TrimotionError
 
 _GAP = 0.1
@@ -91,6 +92,7 @@ def _decoded(
         try:
             packet = next(packets, None)
         except DAMAGE as error:
+            refuse_if_short(error)
             problems.append(f"the sound breaks off ({reason_of(error)})")
             return
         if packet is None:
@@ -98,6 +100,7 @@ def _decoded(
         try:
             frames: list[Any] = packet.decode()
         except DAMAGE as error:
+            refuse_if_short(error)
             if not problems:
                 problems.append(f"damaged sound is left out ({reason_of(error)})")
             continue
