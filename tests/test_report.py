@@ -17,6 +17,7 @@ from pipeline.cli import main
 from pipeline.loop.animate import solve
 from pipeline.progress import Progress
 from pipeline.reporting.plot import MOST_POINTS, plot
+from pipeline.stage_times import StageTimes, added
 from stages.edits import split_triangles
 from stages.metrics.changed_triangles import changed_triangles
 from tests.jobs import job_of
@@ -69,6 +70,11 @@ def test_json_of_animate_and_the_film_is_the_same(clip: Path, tmp_path: Path) ->
     parts = sum(told["seconds_by_stage"].values())
     assert parts == pytest.approx(told["summary"]["seconds"], abs=0.05)
     assert {"trimotion", "numpy", "python"} <= told["versions"].keys()
+    busy = told["busy_seconds"]
+    assert {"decoding", "cuts, focus and motion", "solving", "drawing", "encoding"} <= busy.keys()
+    assert 0 < busy["solving"] < told["summary"]["seconds"]
+    assert told["peak_memory"]["process"] > 2**25
+    assert told["peak_memory"]["largest_worker"] is None
 
 
 def test_pages_of_a_solved_and_a_drawn_track(clip: Path, tmp_path: Path) -> None:
@@ -125,6 +131,8 @@ def test_ranges_are_told_together(clip: Path, tmp_path: Path) -> None:
     job = job_of(clip, track=tmp_path / "a.mtrk", triangulate=QUICK, report="r.json")
     told = solve(job.solve, job.output, job.run, Progress(), runner=InTurn())
     assert [one.frame for one in told.figures] == list(range(COUNT))
+    assert told.memory_apart == pytest.approx(told.memory, rel=0.05)  # here it is the same process
+    assert told.busy["solving"] > 0
     job = job_of(clip, track=tmp_path / "b.mtrk", triangulate=QUICK)
     assert solve(job.solve, job.output, job.run, Progress()).figures == ()
 
@@ -186,6 +194,20 @@ def test_a_call_reports_as_well(clip: Path, tmp_path: Path) -> None:
     told = read(tmp_path / "r.json")
     assert (len(told["frames"]), told["options"]["frames"]) == (3, "0-2")
     assert not any("--" in note for note in told["notes"])
+
+
+def test_stages_take_what_they_do_themselves() -> None:
+    """What a stage waits for from another one is the other's, also where they are generators."""
+    clock = iter(range(100))
+    times = StageTimes(lambda: next(clock))
+    frames = times.over("decoding", [1, 2])
+    with times.spent("drawing"), times.spent("encoding"):
+        pass
+    assert times.seconds == {"encoding": 1, "drawing": 2}  # looked at thrice in a row
+    assert list(times.over("solving", (frame + 1 for frame in frames))) == [2, 3]
+    assert times.seconds["decoding"] == 3  # two frames, and finding no third
+    assert times.seconds["solving"] == 6
+    assert added([{"a": 1.0}, {"a": 2.0, "b": 3.0}]) == {"a": 3.0, "b": 3.0}
 
 
 def test_changed_triangles_are_counted() -> None:

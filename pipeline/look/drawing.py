@@ -9,6 +9,7 @@ from pipeline.look.region_masks import own_mask
 from pipeline.look.smooth import Smoother
 from pipeline.look.stage import Looks, Posed, check_stage, open_stage
 from pipeline.options.job import Job
+from pipeline.stage_times import StageTimes
 from stages.look.fading import Fading
 from stages.look.folded import Folded
 from stages.look.framing import Framing
@@ -30,13 +31,15 @@ class Drawing:
         job: Says how the output looks and how it is written.
         info: The source; gives times, pixel aspect and sound.
         device: Where kernels run.
+        times: Told how long encoding takes.
 
     Raises:
         OptionError: If an option does not fit the source.
         OutputError: If the output cannot be written.
     """
 
-    def __init__(self, job: Job, info: MediaInfo, device: Device) -> None:
+    def __init__(self, job: Job, info: MediaInfo, device: Device, times: StageTimes) -> None:
+        self._times = times
         picture = (info.width, info.height)
         options, look, output = job.solve, job.look, job.output
         assert output.path is not None
@@ -107,7 +110,8 @@ class Drawing:
                 pixels = faded(pixels, leading.pixels(), partner[1])
             if self._watch is not None:
                 self._watch.add(pixels, shown - self._start_time)
-            self._encoder.write(pixels, snapshot.pts, snapshot.time_base, snapshot.frame_index)
+            with self._times.spent("encoding"):
+                self._encoder.write(pixels, snapshot.pts, snapshot.time_base, snapshot.frame_index)
 
     def _looks_at(self, solved: Solved) -> Looks:
         """What is drawn at a frame."""
@@ -167,11 +171,12 @@ class Drawing:
             self._close_masks()
             self._encoder.__exit__(kind, error, trace)
             return
-        with ExitStack() as closing:
+        with self._times.spent("encoding"), ExitStack() as closing:
             closing.push(self._encoder)  # a failure of the last frames leaves nothing either
             closing.callback(self._close_masks)
             for solved in self._smoother.rest():
-                self._draw(solved)
+                with self._times.spent("drawing"):
+                    self._draw(solved)
 
     def _open_masks(self) -> None:
         """Read masks from their beginning again."""

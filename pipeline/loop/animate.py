@@ -28,6 +28,7 @@ from pipeline.options.output import Output
 from pipeline.options.run import Run
 from pipeline.options.solve_options import SolveOptions
 from pipeline.progress import Progress
+from pipeline.stage_times import added
 from pipeline.timeline.mesh_course import with_course
 from pipeline.track import TrackReader, join, refuse_track
 from pipeline.track.resume import check_track_place
@@ -36,6 +37,7 @@ from stages.media import FrameRange, probe
 from stages.media.writing.alone import alone
 from stages.media.writing.commit import PendingFile
 from warp_kernels.color_model import ColorModel
+from warp_kernels.device.memory import peak_memory
 from warp_kernels.errors import OptionError
 
 
@@ -164,7 +166,18 @@ def _joined(
     warnings = _each_once(text for result in results for text in result.warnings)
     frames, seconds = sum(result.frames for result in results), perf_counter() - begun
     figures = tuple(figure for result in results for figure in result.figures)
-    return Animated(frames, seconds, mean, warnings, notes, figures, (("solving", seconds),))
+    return Animated(
+        frames,
+        seconds,
+        mean,
+        warnings,
+        notes,
+        figures,
+        stages=(("solving", seconds),),
+        busy=added(result.busy for result in results),
+        memory=peak_memory(),
+        memory_apart=max((result.memory or 0 for result in results), default=0) or None,
+    )
 
 
 def _each_once(texts: Iterable[str]) -> tuple[str, ...]:
@@ -208,6 +221,8 @@ def _solved_then_drawn(job: Job, progress: Progress, runner: RangeRunner) -> Ani
         warnings=(*solved.warnings, *result.warnings),
         notes=_each_once([*solved.notes, *result.notes]),
         stages=(("solving", solved.seconds), ("drawing", result.seconds)),
+        busy=added((solved.busy, result.busy)),
+        memory_apart=solved.memory_apart,
     )
 
 

@@ -25,6 +25,7 @@ from pipeline.loop.threads import Behind, ahead
 from pipeline.options.job import Job
 from pipeline.options.solve_options import SolveOptions
 from pipeline.progress import Progress
+from pipeline.stage_times import WAITING, StageTimes
 from pipeline.track import TrackReader, TrackWriter
 from pipeline.track.resume import Past, open_track, past_of
 from stages.masks.weight_maps import WeightMap
@@ -68,23 +69,23 @@ def convert(job: Job, fitted: ColorModel, progress: Progress) -> Animated:
         attention = Attention(options.foci, info, step, count, factor)
         size = (info.width, info.height)
         maps = [WeightMap(str(m.file), size, options.frame_range, m.strength) for m in options.maps]
-        # in this order all kernels of the job are compiled together
-        drawing = open_drawing(job, info, device) if draws else None
-        triangulator = triangulator_of(options, size, device, fitted)
         tally = Tally(job, progress, _expected(options, info))
+        # in this order all kernels of the job are compiled together
+        drawing = open_drawing(job, info, device, tally.times) if draws else None
+        triangulator = triangulator_of(options, size, device, fitted)
         restarts: list[str] = []
         refused: list[str] = []
-        found = _opened(decoder, attention, maps, options, past, restarts)
+        found = _opened(decoder, attention, maps, options, past, restarts, tally.times)
         with device, open_track(options, track_path, info, fitted, past) as track:
-            writer = Behind(_Writer(track, drawing), SOLVED_BEHIND)
+            writer = Behind(_Writer(track, drawing, tally.times), SOLVED_BEHIND)
             with drawing or nullcontext(), closing(found), writer:
                 if past is not None:
                     _recall(job, tally, writer if draws else None)
                 keeps = job.look.needs_source
-                frames = solved_frames(found, triangulator, options, past, refused, keeps=keeps)
-                for solved in frames:
-                    writer.put(solved)
-                    tally.solved(solved)
+                awaited = tally.times.over(f"{WAITING}frames", found)
+                frames = solved_frames(awaited, triangulator, options, past, refused, keeps=keeps)
+                for solved in tally.times.over("solving", frames):
+                    _hand_on(solved, writer, tally)
             if track is not None:
                 track.finish()
     made = [] if drawing is None else drawing.notes
@@ -112,12 +113,13 @@ def _opened(
     options: SolveOptions,
     past: Past | None,
     notes: list[str],
+    times: StageTimes,
 ) -> Generator[Prepared, None, None]:
     """Decode and prepare frames ahead of the solution."""
     reached = None if past is None else past.reached
-    frames = with_return(decoder, options)
+    frames = times.over("decoding", with_return(decoder, options))
     found = prepared(frames, decoder.info, attention, maps, options, reached, notes)
-    return ahead(found, DECODED_AHEAD)
+    return ahead(times.over("cuts, focus and motion", found), DECODED_AHEAD)
 
 
 def triangulator_of(
@@ -179,19 +181,30 @@ def _recall(job: Job, tally: Tally, writer: Behind[Solved] | None) -> None:
                 tally.recalled(row)
                 continue
             solved = Solved(row.shot, track.snapshot(row.frame), source, is_stored=True)
-            writer.put(solved)
-            tally.solved(solved)
+            _hand_on(solved, writer, tally)
+
+
+def _hand_on(solved: Solved, writer: Behind[Solved], tally: Tally) -> None:
+    """Let a frame be stored and drawn, and count it."""
+    with tally.times.spent(f"{WAITING}the output"):
+        writer.put(solved)
+    tally.solved(solved)
 
 
 class _Writer:
     """Stores a solved frame, and draws it."""
 
-    def __init__(self, track: TrackWriter | None, drawing: Drawing | Exporting | None) -> None:
+    def __init__(
+        self, track: TrackWriter | None, drawing: Drawing | Exporting | None, times: StageTimes
+    ) -> None:
         self._track = track
         self._drawing = drawing
+        self._times = times
 
     def __call__(self, solved: Solved) -> None:
         if self._track is not None and not solved.is_stored:
-            self._track.write(solved.snapshot, solved.shot, more=solved.has_more)
+            with self._times.spent("writing the track"):
+                self._track.write(solved.snapshot, solved.shot, more=solved.has_more)
         if self._drawing is not None:
-            self._drawing.draw(solved)
+            with self._times.spent("drawing"):
+                self._drawing.draw(solved)

@@ -18,6 +18,7 @@ from pipeline.options.look import Look
 from pipeline.options.seam import Seam
 from pipeline.options.solve_options import SolveOptions
 from pipeline.progress import Progress
+from pipeline.stage_times import WAITING
 from pipeline.timeline.timeline import Timeline
 from pipeline.track import FrameRow, TrackReader
 from stages.media import FrameRange, MediaInfo, open_decoder
@@ -56,13 +57,22 @@ def drawn(job: Job, track: TrackReader, info: MediaInfo, progress: Progress) -> 
     device = Device(job.run.device, job.run.threads, progress.kernels)
     shown = track.rows_in(options.frame_range)
     tally = Tally(job, progress, len(shown))
-    drawing = open_drawing(job, info, device)
-    with device, drawing, Behind(drawing.draw, SOLVED_BEHIND) as writer:
+    times = tally.times
+    drawing = open_drawing(job, info, device, times)
+
+    def draw(solved: Solved) -> None:
+        """Draw a frame in the other thread."""
+        with times.spent("drawing"):
+            drawing.draw(solved)
+
+    with device, drawing, Behind(draw, SOLVED_BEHIND) as writer:
         leading = _leading(track, shown, options.seam)
         for standings in ([leading] if leading else []) + [{}]:
             seen = [row for row in track.rows if row.frame in standings] if standings else shown
-            for solved in _solved(job, track, seen, standings, device):
-                writer.put(solved)
+            read = _solved(job, track, seen, standings, device)
+            for solved in times.over("reading the track", read):
+                with times.spent(f"{WAITING}the output"):
+                    writer.put(solved)
                 if solved.is_shown and not standings:
                     tally.solved(solved)
     return tally.result(begun, (), [*device.notes, *drawing.notes, *_unsolved(look, options)])

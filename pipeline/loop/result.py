@@ -1,7 +1,7 @@
 """What a run comes to, counted while it goes on."""
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
 from time import perf_counter
 
 import numpy as np
@@ -9,10 +9,11 @@ import numpy as np
 from pipeline.envelope import Solved
 from pipeline.options.job import Job
 from pipeline.progress import Progress
+from pipeline.stage_times import StageTimes
 from pipeline.track import FrameRow
 from stages.mesh import Mesh
 from stages.metrics.changed_triangles import changed_triangles
-from warp_kernels.device.memory import refuse_without_room
+from warp_kernels.device.memory import peak_memory, refuse_without_room
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +53,12 @@ class Animated:
     """Of every frame, in order, if a report is wanted."""
     stages: tuple[tuple[str, float], ...] = ()
     """Parts of the wall time, by name [s], if a report is wanted."""
+    busy: Mapping[str, float] = field(default_factory=dict)
+    """How long each stage worked, by name [s]; they run side by side, in every process."""
+    memory: int | None = None
+    """Most memory that this process had [bytes], if it is known."""
+    memory_apart: int | None = None
+    """Likewise of the largest process of those that solved ranges beside it."""
 
 
 class Tally:
@@ -73,6 +80,8 @@ class Tally:
         self._mesh: Mesh | None = None
         self._clock = perf_counter()
         self._told = 0
+        self.times = StageTimes()
+        """How long each stage works."""
 
     def solved(self, one: Solved) -> None:
         """Count a frame and tell of it."""
@@ -112,6 +121,8 @@ class Tally:
             notes=tuple(notes),
             figures=tuple(self._figures),
             stages=self._stages(seconds),
+            busy=self.times.seconds,
+            memory=peak_memory(),
         )
 
     def _stages(self, seconds: float) -> tuple[tuple[str, float], ...]:

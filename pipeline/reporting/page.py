@@ -57,6 +57,9 @@ def page(told: Mapping[str, Any], strip: Sequence[Thumbnail]) -> str:
         *_sentences("Notes", "note", told["notes"]),
         "<h2>Time [s]</h2>",
         _table({"in all": told["summary"]["seconds"], **told["seconds_by_stage"]}),
+        "<h2>Work of each stage [s]</h2>",
+        "<p>Stages run side by side, in every process, so together they may take longer.</p>",
+        _table(told["busy_seconds"]),
         "<h2>Options</h2>",
         _table({f"--{flag}": value for flag, value in told["options"].items()}),
         "<h2>Versions</h2>",
@@ -73,8 +76,17 @@ def _summary(told: Mapping[str, Any]) -> dict[str, object]:
         "frames": summary["frames"],
         "mean rmse": f"{summary['mean_rmse']:.3f} code values",
         "time": f"{summary['seconds']:.1f} s",
+        "most memory": _memory(told["peak_memory"]),
         "cuts": ", ".join(map(str, summary["cuts"])) or "none",
     }
+
+
+def _memory(peak: Mapping[str, int | None]) -> str:
+    """What the processes had at most."""
+    own, apart = (None if one is None else f"{one / 1e6:.0f} MB" for one in peak.values())
+    return (
+        f"{own or 'unknown'}, {apart} in the largest other process" if apart else own or "unknown"
+    )
 
 
 def _strip(strip: Iterable[Thumbnail]) -> list[str]:

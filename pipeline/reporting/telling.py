@@ -55,6 +55,8 @@ class Telling:
                 "cuts": [one["frame"] for one in frames if one["cut"]],
             },
             "seconds_by_stage": {name: round(s, DIGITS) for name, s in result.stages},
+            "busy_seconds": {name: round(s, DIGITS) for name, s in result.busy.items()},
+            "peak_memory": {"process": result.memory, "largest_worker": result.memory_apart},
             "warnings": [*self.warnings, *result.warnings],
             "notes": [*self.notes, *result.notes],
             "options": _options(self.command, self.given),
