@@ -83,9 +83,9 @@ def _piped(arguments: argparse.Namespace) -> AbstractContextManager[None]:
     """Files in place of `-` and of addresses, if a name is one."""
     if "inputs" in arguments:
         take(arguments, arguments.inputs[0])
-    keys = (*inputs_of(arguments), "output")
+    keys = (*inputs_of(arguments), "output", "check")
     names = [getattr(arguments, key, None) or "" for key in keys]
-    names += getattr(arguments, "inputs", [])
+    names += [*getattr(arguments, "inputs", []), *getattr(arguments, "tracks", [])]
     if not any(name.startswith("-") or "://" in name for name in names):
         return nullcontext()
     from pipeline.commands.pipes import piped
@@ -161,14 +161,13 @@ def run_info(arguments: argparse.Namespace) -> None:
         arguments: What the user gave.
     """
     from pipeline.commands.info import describe, edits_in
-    from pipeline.commands.pipes import shown_name
+    from pipeline.commands.pipes import source_name
 
     path = Path(arguments.file)
     if arguments.edits:
         print(edits_in(path), end="")
     else:
-        called = getattr(arguments, "address", None) or str(shown_name(path))
-        print(describe(path, as_json=arguments.json, called=called))
+        print(describe(path, as_json=arguments.json, called=source_name(arguments, path)))
 
 
 def run_measure(arguments: argparse.Namespace) -> None:

@@ -9,10 +9,12 @@ from pathlib import Path
 
 import pytest
 
+import trimotion
 from pipeline.cli import main
 from pipeline.commands.addresses import fetched, is_address
-from tests.tracks import QUICK_FLAGS, write_clip
-from warp_kernels.errors import MediaError
+from tests.media_samples import write_sound
+from tests.tracks import CUT, QUICK_FLAGS, write_clip
+from warp_kernels.errors import MediaError, OptionError
 
 ODD = {
     "/x/../..%2F..%2Fetc%2Fpasswd": "passwd",
@@ -102,13 +104,24 @@ def test_a_film_on_the_web_is_told_of_and_compared(
     assert told[0] == told[1]
     assert main(["measure", address, file, "--json", "--allow-url"]) == 0
     assert json.loads(capsys.readouterr().out)["rmse"] == 0
+    assert main(["plan", address, "--json", "--allow-url"]) == 0
+    planned = json.loads(capsys.readouterr().out)
+    assert (planned["source"], planned["shots"]) == (address, [0, CUT])
+    song = write_sound(site[1] / "song.m4a")
+    for name in (str(song), f"{site[0]}/song.m4a"):
+        assert main(["listen", name, "--allow-url", "-q"]) == 0
+        told.append(capsys.readouterr().out)
+        assert told[-1].startswith(f"{name}: ")
+    assert told[-1].split(": ", 1)[1] == told[-2].split(": ", 1)[1]
 
 
 OTHERS = {"info": [], "measure": ["other.mkv"]}
 """What a command wants beside its source; others write a file."""
 
 
-@pytest.mark.parametrize("command", ["animate", "solve", "preview", "info", "measure"])
+@pytest.mark.parametrize(
+    "command", ["animate", "solve", "preview", "info", "measure", "plan", "listen"]
+)
 def test_nothing_is_fetched_unasked(command: str, tmp_path: Path, capsys) -> None:
     """The line names the option."""
     source = "https://example.invalid/clip.mp4"
@@ -117,6 +130,39 @@ def test_nothing_is_fetched_unasked(command: str, tmp_path: Path, capsys) -> Non
     assert error == (
         f"trimotion: error: {source}: is an address; add --allow-url to have it fetched\n"
     )
+
+
+NOT_FETCHED = [
+    ("edit", "URL", "--no-open"),
+    ("render", "URL", "-o", "a.mp4"),
+    ("render", "a.mtrk", "--source", "URL", "-o", "a.mp4"),
+    ("join", "a.mtrk", "URL", "-o", "b.mtrk"),
+    ("measure", "a.mp4", "URL"),
+    ("timeline", "pulse", "--check", "URL"),
+    ("plan", "URL", "--allow-url", "--format", "slurm"),
+    ("animate", "a.mp4", "-o", "URL", "--allow-url"),
+]
+
+
+@pytest.mark.parametrize("words", NOT_FETCHED, ids=" ".join)
+def test_where_no_address_can_be_a_line_says_so(words: tuple[str, ...], capsys) -> None:
+    """It names the address as it was written, and a file is the remedy."""
+    address = "https://example.invalid/clip.mp4"
+    assert main([address if word == "URL" else word for word in words]) in (2, 3, 4)
+    error = capsys.readouterr().err
+    assert error.startswith(f"trimotion: error: {address}: ")
+    assert "address" in error
+    assert "file" in error.split("; ")[1]
+    assert error.count("\n") == 1
+
+
+def test_a_call_fetches_nothing(tmp_path: Path) -> None:
+    """A program does that itself."""
+    address = "https://example.invalid/clip.mp4"
+    with pytest.raises(MediaError, match="is a network address"):
+        trimotion.animate(address, tmp_path / "o.mp4")
+    with pytest.raises(OptionError, match="urlretrieve fetches a file"):
+        trimotion.animate(address, tmp_path / "o.mp4", allow_url=True)
 
 
 @pytest.mark.parametrize(

@@ -214,7 +214,7 @@ def _report(
     """Write the report of a run, if one is wanted."""
     if job.run.report is None:
         return
-    from pipeline.commands.pipes import shown_name
+    from pipeline.commands.pipes import shown_name, source_name
     from pipeline.reporting.telling import Telling
     from pipeline.reporting.write import write_report
 
@@ -223,7 +223,6 @@ def _report(
     output = job.output.path or job.output.track
     assert source is not None
     assert output is not None
-    called = getattr(arguments, "address", None) or str(shown_name(source))
-    names = (called, str(shown_name(output)))
+    names = (source_name(arguments, source), str(shown_name(output)))
     given = given_by(arguments)
     write_report(Telling(arguments.command, given, *names, result, notes, warnings), job, track)

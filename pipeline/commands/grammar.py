@@ -18,6 +18,7 @@ from pipeline.commands.hearing.grammar import LISTEN_ABOUT, LISTEN_USAGE, add_li
 from pipeline.commands.overview import COMMANDS_HELP
 from pipeline.commands.styles.style_list import registry_help
 from pipeline.commands.unknown import no_command, unknown_arguments
+from pipeline.commands.web import add_allow_url
 from pipeline.options.command_line import add_job_options
 from pipeline.options.values import text_value, whole_number
 from pipeline.printable import one_line
@@ -122,7 +123,7 @@ def _add_animate(commands: Any) -> None:
     _add_output(
         parser, "OUTPUT", "mp4, mov, mkv, webm, gif, a still, or stills such as shot_####.png"
     )
-    _add_allow_url(parser)
+    add_allow_url(parser)
     add_job_options(parser, "animate")
     _add_messages(parser)
 
@@ -137,7 +138,7 @@ def _add_solve(commands: Any) -> None:
     )
     _add_inputs(parser, "INPUT", "what FFmpeg reads, or a folder of it")
     _add_output(parser, "JOB.mtrk", "the mesh track")
-    _add_allow_url(parser)
+    add_allow_url(parser)
     add_job_options(parser, "solve")
     _add_messages(parser)
 
@@ -184,7 +185,7 @@ def _add_preview(commands: Any) -> None:
         help="a still (default: the name of the input and .preview.png, in this folder)",
     )
     parser.add_argument("--json", action="store_true", help="print figures as JSON")
-    _add_allow_url(parser)
+    add_allow_url(parser)
     add_job_options(parser, "preview")
     _add_messages(parser)
 
@@ -212,14 +213,6 @@ def _add_output(parser: argparse.ArgumentParser, metavar: str, text: str) -> Non
         type=text_value,
         required=True,
         help=text,
-    )
-
-
-def _add_allow_url(parser: argparse.ArgumentParser, metavar: str = "INPUT") -> None:
-    parser.add_argument(
-        "--allow-url",
-        action="store_true",
-        help=f"{metavar} may be an http or https address; it is fetched whole, to a temporary file",
     )
 
 
@@ -265,7 +258,7 @@ def _add_info(commands: Any) -> None:
         action="store_true",
         help="print the edits by hand that a track holds, as --edits of solve reads them",
     )
-    _add_allow_url(parser, "FILE")
+    add_allow_url(parser, "FILE")
 
 
 def _add_measure(commands: Any) -> None:
@@ -285,7 +278,7 @@ def _add_measure(commands: Any) -> None:
         help="what the output was drawn from; its frames are compared if no range is given",
     )
     parser.add_argument("--json", action="store_true", help="print JSON, with every frame")
-    _add_allow_url(parser, "SOURCE")
+    add_allow_url(parser, "SOURCE")
     add_job_options(parser, "measure")
     _add_telling(parser.add_argument_group("messages"))
 

@@ -14,10 +14,12 @@ from pathlib import Path
 from pipeline.commands.addresses import fetched, is_address, refuse_address
 from pipeline.commands.inputs import PIPE, inputs_of, is_pipe
 from pipeline.options.output_name import is_still
-from warp_kernels.errors import MediaError, OptionError, TrimotionError
+from warp_kernels.errors import MediaError, OptionError, OutputError, TrimotionError
 
 FORMATS = {"solve": ".mtrk", "join": ".mtrk", "preview": ".png", "listen": ".json"}
 """Ending of an output whose name does not say, by the command; PNG or Matroska for the others."""
+REMEDY = "download the file and give its name"
+"""What to do about an address that is not fetched."""
 _MADE, _RECEIVED = "standard output", "standard input"
 
 
@@ -41,7 +43,8 @@ def piped(arguments: argparse.Namespace) -> Iterator[None]:
         yield
         return
     if arguments.command == "plan" and given["format"] not in ("text", "json"):
-        raise OptionError("-: no farm can read this pipe; give the name of a file")
+        what = "fetches this address" if address else "can read this pipe"
+        raise OptionError(f"{address or PIPE}: no farm {what}; give the name of a file")
     if len(inputs) > 1:
         raise OptionError("-: standard input is one file; give the other one a name")
     if writes and given.get("progress") == "json":
@@ -74,12 +77,20 @@ def _address_in(arguments: argparse.Namespace) -> str | None:
     """The address that is to be fetched, if the source is one.
 
     Raises:
-        MediaError: If nobody allowed that.
+        MediaError: If nobody allowed that, or nobody can.
         OptionError: If it is one of several inputs.
+        OutputError: If the output is one.
     """
-    if "allow_url" not in arguments:
-        return None
     given = vars(arguments)
+    if is_address(given.get("output")):
+        if arguments.command == "measure":  # which reads it
+            raise MediaError(given["output"], "is an address", REMEDY)
+        raise OutputError(given["output"], "is an address", "name a file")
+    if "allow_url" not in arguments:
+        for name in _read_by(arguments):
+            if name is not None and is_address(name):
+                raise MediaError(name, "is an address", REMEDY)
+        return None
     inputs = given["inputs"] if "inputs" in given else [given[_source_key(arguments)]]
     named = [name for name in inputs if is_address(name)]
     if not named:
@@ -89,6 +100,13 @@ def _address_in(arguments: argparse.Namespace) -> str | None:
     if len(inputs) > 1:
         raise OptionError(f"{named[0]}: an address is an input of its own; name it alone")
     return named[0]
+
+
+def _read_by(arguments: argparse.Namespace) -> list[str | None]:
+    """Names of what a command reads that fetches nothing."""
+    given = vars(arguments)
+    keys = (*inputs_of(arguments), *(("check",) if arguments.command == "timeline" else ()))
+    return [*(given.get(key) for key in keys), *given.get("inputs", []), *given.get("tracks", [])]
 
 
 def _source_key(arguments: argparse.Namespace) -> str:
@@ -116,6 +134,16 @@ def shown_name(path: Path) -> Path:
         path: The file that is read or written.
     """
     return Path(PIPE) if path.stem in (_MADE, _RECEIVED) else path
+
+
+def source_name(arguments: argparse.Namespace, path: Path) -> str:
+    """What a user calls the source: `-`, its address, or the name of the file.
+
+    Args:
+        arguments: What the user gave, as `piped` changed it.
+        path: The file that is read.
+    """
+    return getattr(arguments, "address", None) or str(shown_name(path))
 
 
 def _ending_for(arguments: argparse.Namespace) -> str:

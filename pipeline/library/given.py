@@ -13,6 +13,7 @@ from warp_kernels.errors import OptionError
 INSTEAD = {
     "quiet": "calls are, unless progress says otherwise",
     "verbose": "notes are in the result",
+    "allow_url": "urllib.request.urlretrieve fetches a file",
     "debug": "Python shows where an error arose",
 }
 """What is there in place of flags that make no sense in a program."""

@@ -33,11 +33,15 @@ class Plan:
         """Number of frames; what two ranges have in common counts once."""
         return sum(map(_length, self.shots))
 
-    def as_json(self) -> str:
-        """All figures."""
+    def as_json(self, called: str) -> str:
+        """All figures.
+
+        Args:
+            called: What the user calls the source.
+        """
         return json.dumps(
             {
-                "source": str(self.source),
+                "source": called,
                 "frames": self.frames,
                 "shots": [shot.first for shot in self.shots],
                 "ranges": [_as_dict(part) for part in self.ranges],

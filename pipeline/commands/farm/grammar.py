@@ -2,6 +2,7 @@
 
 import argparse
 
+from pipeline.commands.web import add_allow_url
 from pipeline.options.command_line import add_job_options
 from pipeline.options.values import text_value, whole_number
 
@@ -23,6 +24,7 @@ FORMATS = ("text", "json", "slurm", "openjd", "flamenco")
 def add_plan_options(parser: argparse.ArgumentParser) -> None:
     """Give a parser what `plan` takes."""
     parser.add_argument("source", metavar="INPUT", type=text_value, help="what FFmpeg reads")
+    add_allow_url(parser)
     parser.add_argument(
         "--parts", metavar="N", type=whole_number, help="at most so many (default: one a shot)"
     )

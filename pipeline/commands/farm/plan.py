@@ -4,6 +4,7 @@ import argparse
 from pathlib import Path
 
 from pipeline.commands.convert import given_by, solve_job
+from pipeline.commands.pipes import source_name
 from pipeline.farm.farm_job import FarmJob
 from pipeline.farm.formats import ENGINES
 from pipeline.loop.plan import LEAD, Pieces, Plan, plan
@@ -33,7 +34,8 @@ def planned(arguments: argparse.Namespace) -> str:
     pieces = _pieces(arguments)
     found = plan(job.solve, arguments.parts, pieces)
     if form not in ENGINES:
-        return found.as_json() if form == "json" else found.as_lines()
+        called = source_name(arguments, found.source)
+        return found.as_json(called) if form == "json" else found.as_lines()
     return ENGINES[form](_farmed(arguments, found, Path(output), job.run.threads)).rstrip("\n")
 
 

@@ -2,6 +2,7 @@
 
 import argparse
 
+from pipeline.commands.web import add_allow_url
 from pipeline.options.values import plain_number, text_value, whole_number
 
 LISTEN_ABOUT = (
@@ -22,6 +23,7 @@ def add_listen_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "source", metavar="INPUT", type=text_value, help="a song, or a clip with sound"
     )
+    add_allow_url(parser)
     files = (
         (("-o", "--output"), "SONG.beats.json", "write all that is heard, for timelines"),
         (("--labels",), "FILE.txt", "write beats as labels of Audacity"),

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
-from pipeline.commands.pipes import shown_name
+from pipeline.commands.pipes import shown_name, source_name
 from pipeline.progress import tell
 from stages.hearing.beats_file import read_beats, write_beats, write_labels
 from stages.hearing.formats.json_form import MOST_METER, as_json
@@ -43,9 +43,10 @@ def listen_to(arguments: argparse.Namespace) -> str:
     found = _heard(arguments, source)
     heard = found.heard
     if not arguments.quiet:
+        called = source_name(arguments, source)
         for note in found.notes:
             remedy = f"; {REMEDY}" if note == NO_BEAT and arguments.bpm is None else ""
-            tell(f"trimotion: note: {shown_name(source)}: {note}{remedy}", sys.stderr)
+            tell(f"trimotion: note: {called}: {note}{remedy}", sys.stderr)
     for kind, path in written.items():
         if kind == "output":
             write_beats(heard, path)
@@ -55,7 +56,7 @@ def listen_to(arguments: argparse.Namespace) -> str:
             write_picture(path, sheet_of_sound(heard, found.wave, FRAMES, source.name))
     if arguments.json:
         return as_json(heard).rstrip("\n")
-    told = _told(heard, source, written)
+    told = _told(heard, source_name(arguments, source), written)
     if any(shown_name(path) != path for path in written.values()):  # standard output is taken
         tell(told, sys.stderr)
         return ""
@@ -111,12 +112,12 @@ def _heard(arguments: argparse.Namespace, source: Path) -> Listened:
     return replace(found, heard=heard, notes=notes)
 
 
-def _told(heard: Heard, source: Path, written: Mapping[str, Path]) -> str:
+def _told(heard: Heard, called: str, written: Mapping[str, Path]) -> str:
     """For people."""
     tempo = "no beat"
     if heard.bpm is not None:
         tempo = f"{heard.bpm:.1f} beats a minute, {heard.meter} a bar"
-    lines = [f"{shown_name(source)}: {_clock(heard.duration)}, {tempo}"]
+    lines = [f"{called}: {_clock(heard.duration)}, {tempo}"]
     for name, times in (
         ("beats", heard.beats),
         ("bars", heard.downbeats),

@@ -89,7 +89,8 @@ def _check_regular(path: Path) -> None:
     except (OSError, ValueError) as error:
         if _ADDRESS.match(str(path)):
             remedy = "download the file and give its name"
-            raise MediaError(path, "is a network address", remedy) from error
+            written = re.sub(":/+", "://", str(path), count=1)  # a path has lost one of them
+            raise MediaError(written, "is a network address", remedy) from error
         remedy = "check the name"
         if re.search(r"#|%\d*d", path.name):
             remedy += "; numbered stills are written name_####.png, or name_%01d.png without zeros"
