@@ -1,9 +1,12 @@
 """The emulated card and the CPU agree to the bit; run by `make cuda-check`, not with the suite."""
 
+from collections.abc import Iterable, Iterator, Sequence
+from copy import copy
 from pathlib import Path
 from threading import Thread
 from types import SimpleNamespace
 from typing import Any
+from weakref import WeakKeyDictionary
 
 import numpy as np
 import pytest
@@ -27,7 +30,9 @@ from tests.kernel_samples import (
 )
 from warp_kernels.color_model import COLOR_MODELS
 from warp_kernels.device.device import Device
+from warp_kernels.device.emulation import EmulatedLauncher
 from warp_kernels.device.phase import Phase
+from warp_kernels.device.runtime import WARP
 from warp_kernels.device.staging import ArrayRows
 from warp_kernels.energy.sums import SUMS
 from warp_kernels.energy.topology_survey import Survey
@@ -106,12 +111,70 @@ def test_clips(style: str, device: str, tmp_path: Path) -> None:
     np.testing.assert_array_equal(actual, expected)
 
 
-def test_two_threads_share_a_card(device: str) -> None:
+class Owned(EmulatedLauncher):
+    """A launcher that refuses memory of another stream's, and what is waited for under the lock."""
+
+    def record(self, kernel: Any, arguments: Sequence[Any]) -> Any:
+        """Look whose arrays a launch is over."""
+        for array in _arrays_in(arguments):
+            owner = OWNERS.setdefault(array, id(self))
+            assert owner == id(self), f"{kernel.key} looks at memory of another stream"
+            SEEN.add(owner)
+        return super().record(kernel, arguments)
+
+    def wait(self, mark: None) -> None:
+        """Wait as others do."""
+        # real need: a lock tells in no other way whether its holder waits
+        assert not WARP._is_owned(), "others cannot launch"  # type: ignore[attr-defined]
+
+
+OWNERS: WeakKeyDictionary[wp.array, int] = WeakKeyDictionary()
+"""Which launcher was first to look at an array."""
+SEEN: set[int] = set()
+"""The launchers that looked at any."""
+
+
+def _arrays_in(values: Iterable[Any]) -> Iterator[wp.array]:
+    """The arrays among arguments of a launch, and those in structures."""
+    for value in values:
+        if isinstance(value, wp.array):
+            yield value
+        elif type(value).__name__ == "StructInstance":  # a name of Warp's own
+            yield from _arrays_in(vars(value).values())
+
+
+def test_threads_of_a_job_have_streams_of_their_own(
+    device: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What solves and what draws share no memory, so that neither need wait for the other."""
+    made: list[Owned] = []
+
+    def owned(place: Any) -> Owned:
+        made.append(Owned(place))
+        return made[-1]
+
+    def beside(launcher: Owned) -> Owned:
+        made.append(copy(launcher))
+        return made[-1]
+
+    # real need: whose memory it is is known to nobody but who records launches
+    monkeypatch.setattr("warp_kernels.device.device._emulated", owned)
+    monkeypatch.setattr(Owned, "beside", beside)
+    look = {"styles": (STYLES["paper"](), STYLES["edges"]()), "blend": 4}
+    expected = film(tmp_path, "cpu", **look)
+    np.testing.assert_array_equal(film(tmp_path, device, **look), expected)
+    assert len(made) == 2
+    assert {id(one) for one in made} == SEEN
+
+
+@pytest.mark.parametrize("shared", [True, False])
+def test_two_threads_on_a_card(device: str, shared: bool) -> None:
     """One solves meshes that grow, so that it captures again and again, and the other draws."""
-    shared, errors = Device(device), []
+    solving, errors = Device(device), []
+    drawn_on = solving if shared else solving.beside()
     mesh = random_mesh(*SIZE, 60)
-    snapshot = snapshot_of(shared, noise(*SIZE), mesh, COLOR_MODELS["linear"])
-    renderer = Renderer(shared, SIZE, SIZE, (STYLES["flat"](),))
+    snapshot = snapshot_of(solving, noise(*SIZE), mesh, COLOR_MODELS["linear"])
+    renderer = Renderer(drawn_on, SIZE, SIZE, (STYLES["flat"](),))
     expected = renderer.render(snapshot)
 
     def draw() -> None:
@@ -126,7 +189,7 @@ def test_two_threads_share_a_card(device: str) -> None:
     drawing.start()
     for number in range(12):
         grown = random_mesh(*SIZE, 20 + 20 * number)
-        workspace = poisoned_workspace(shared, noise(*SIZE), grown, COLOR_MODELS["constant"])
+        workspace = poisoned_workspace(solving, noise(*SIZE), grown, COLOR_MODELS["constant"])
         workspace.hold(np.zeros((grown.vertex_count, 3)))
         workspace.iterate(3, trust=0.5, regularity=1e-3)
         workspace.fit()

@@ -71,7 +71,7 @@ def convert(job: Job, fitted: ColorModel, progress: Progress) -> Animated:
         maps = [WeightMap(str(m.file), size, options.frame_range, m.strength) for m in options.maps]
         tally = Tally(job, progress, _expected(options, info))
         # in this order all kernels of the job are compiled together
-        drawing = open_drawing(job, info, device, tally.times) if draws else None
+        drawing = open_drawing(job, info, device.beside(), tally.times) if draws else None
         triangulator = triangulator_of(options, size, device, fitted)
         restarts: list[str] = []
         refused: list[str] = []

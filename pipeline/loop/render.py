@@ -58,7 +58,7 @@ def drawn(job: Job, track: TrackReader, info: MediaInfo, progress: Progress) -> 
     shown = track.rows_in(options.frame_range)
     tally = Tally(job, progress, len(shown))
     times = tally.times
-    drawing = open_drawing(job, info, device, times)
+    drawing = open_drawing(job, info, device.beside(), times)
 
     def draw(solved: Solved) -> None:
         """Draw a frame in the other thread."""

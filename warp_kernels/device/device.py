@@ -13,6 +13,7 @@ import os
 import weakref
 from collections import Counter
 from collections.abc import Callable, Sequence
+from copy import copy
 from functools import partial
 from typing import Any
 
@@ -56,24 +57,41 @@ class Device:
         if name == "auto" and not self.is_cuda:
             self.notes += unused_card()
         self.part_count = 1 if self.is_cuda else max(1, threads or os.cpu_count() or 1)
-        self._launcher = _emulated(self.warp) if emulated else WarpLauncher(self.warp, tell)
+        self._begin(_emulated(self.warp) if emulated else WarpLauncher(self.warp, tell))
+
+    def _begin(self, launcher: Launcher) -> None:
+        """Have what belongs to one way to the device alone."""
+        self._launcher = launcher
         if self.part_count > 1:
             self._launcher.expect([meet])
         self._taken = 0
         self.traffic: Counter[str] = Counter()
         """Copies, launches and waits so far, on a card."""
         self._staging = self._new_staging() if self.is_cuda else None
+        # who waits for a card lets others launch there meanwhile
+        self._turn = WARP if self._staging is None else self._staging.turn
         self._is_closed = False
         self._team = self._new_team()
 
+    def beside(self) -> "Device":
+        """The device for another thread: of a card, a stream that waits for nothing of this one.
+
+        Arrays, and launches over them, belong to the one that made them. The CPU's cores work for
+        all threads together, so there it is the device itself.
+        """
+        if not self.is_cuda:
+            return self
+        other = copy(self)
+        other._begin(self._launcher.beside())
+        return other
+
     def _new_staging(self) -> Staging:
         """The way to and from a card."""
-        with WARP:
-            return Staging(self.warp, self._launcher, self.traffic)
+        return Staging(self.warp, self._launcher, self.traffic)
 
     def _new_team(self) -> Team:
         """Threads that end when nobody refers to the device any more."""
-        with WARP:
+        with WARP, self._launcher.on_stream():
             flags = wp.zeros((self.part_count + 1) * STRIDE, dtype=int, device=self.warp)
             team = Team(self.part_count, self._launcher, flags)
         # at exit threads that wait are no burden, and one that works must not lose its team
@@ -110,7 +128,7 @@ class Device:
         flows_on: bool = False,
     ) -> Phase:
         """Record the launch of `kernel`, split over the threads; see `Phase`, also for its size."""
-        with WARP:
+        with WARP, self._launcher.on_stream():
             spans = [wp.zeros(1, dtype=wp.vec2i, device=self.warp) for _ in range(self.part_count)]
             parts = [self._launcher.record(kernel, [span, *inputs, *outputs]) for span in spans]
         return Phase(parts, self._span_writer(spans), per_element, smallest_part, flows_on)
@@ -140,19 +158,20 @@ class Device:
         """
         if times == 0:
             return
-        with WARP:
+        with self._turn:
             if self._is_closed:
                 raise RuntimeError(f"{self!r} was closed; make another one")
             if self._staging is not None:
                 self._staging.flush()
                 self.traffic[LAUNCHES] += times * len(phases)
-            try:
-                self._team.run(phases, times)
-            except BaseException:
-                # an interrupt has left the team out of step: the next caller needs a new one
-                self._team.abandon()
-                self._team = self._new_team()
-                raise
+            with WARP:
+                try:
+                    self._team.run(phases, times)
+                except BaseException:
+                    # an interrupt has left the team out of step: the next caller needs a new one
+                    self._team.abandon()
+                    self._team = self._new_team()
+                    raise
 
     def empty(self, shape: Any, dtype: Any) -> wp.array:
         """A new device array; only workspaces ask for one.
@@ -160,7 +179,7 @@ class Device:
         Raises:
             TrimotionError: If a card has no memory left.
         """
-        with WARP:
+        with WARP, self._launcher.on_stream():
             try:
                 array = wp.empty(shape, dtype=dtype, device=self.warp)
             except RuntimeError as error:  # all that Warp says of a full card
@@ -175,17 +194,18 @@ class Device:
 
     def clear(self, array: wp.array) -> None:
         """Fill a device array with zeros."""
-        with WARP:
+        with self._turn:
             if self._staging is not None:
                 self._staging.flush()
-            array.zero_()
+            with WARP, self._launcher.on_stream():
+                array.zero_()
 
     def write(self, array: wp.array, values: np.ndarray) -> None:
         """Copy host values into the beginning of a device array."""
         if self._staging is None:
             _seen_by_host(array)[: len(values)] = values
             return
-        with WARP:
+        with self._turn:
             self._staging.write(array, values)
 
     def read(self, array: wp.array, count: int) -> np.ndarray:
@@ -200,19 +220,19 @@ class Device:
         """
         if self._staging is None:
             return [_rows_seen(rows).copy() for rows in wanted]
-        with WARP:
+        with self._turn:
             return self._staging.read(wanted)
 
     def synchronize(self) -> None:
         """Wait until everything launched so far is done."""
         if self._staging is not None:
-            with WARP:
+            with self._turn:
                 self._staging.flush()
                 self._staging.wait()
 
     def close(self) -> None:
         """End the threads, and wait for them; what runs is finished first."""
-        with WARP:
+        with self._turn, WARP:
             self._is_closed = True
             self._team.dismiss()
         self._team.join()
@@ -238,7 +258,7 @@ def _write_span(
     staging: Staging, spans: Sequence[wp.array], number: int, begin: int, end: int
 ) -> None:
     """Write the range of one part into memory that the host does not see."""
-    with WARP:
+    with staging.turn:
         staging.write(spans[number], np.array([[begin, end]]))
 
 

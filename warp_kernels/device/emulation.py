@@ -14,6 +14,9 @@ import subprocess
 import sys
 from collections.abc import Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import AbstractContextManager, nullcontext
+from copy import copy
+from dataclasses import dataclass
 from pathlib import Path
 from threading import get_ident
 from typing import Any
@@ -73,6 +76,16 @@ _PRELUDE = re.compile(r"^#define WP_\w+(?: \d+)?\n|^#include \"\w+\.h\"\n", re.M
 _ENTRY = re.compile(r'extern "C" .*?__global__ void\s+(\w+)_cuda_kernel_forward\(([^{]*)\)\s*\{')
 
 
+@dataclass
+class Capture:
+    """The sequence that is being captured, if any."""
+
+    tape: list[Graph] | None = None
+    """The launches so far."""
+    thread: int | None = None
+    """Who captures."""
+
+
 class EmulatedLauncher:
     """Launches on an emulated card.
 
@@ -85,8 +98,15 @@ class EmulatedLauncher:
             raise OptionError(f"--device {EMULATED}: needs the compiler g++; install it")
         self._device = device
         self._awaited: dict[Any, None] = {}
-        self._tape: list[Graph] | None = None
-        self._capturing: int | None = None
+        self._capture = Capture()
+
+    def beside(self) -> "EmulatedLauncher":
+        """One for another thread: streams are not emulated, and a capture is everybody's."""
+        return copy(self)
+
+    def on_stream(self) -> AbstractContextManager[None]:
+        """Nothing but the launches: there is one order for all."""
+        return nullcontext()
 
     def expect(self, kernels: Iterable[Any]) -> None:
         """Name kernels that will be recorded."""
@@ -111,12 +131,12 @@ class EmulatedLauncher:
     def capture(self, launches: Sequence[Any]) -> Graph:
         """Note the launches, each with its size, instead of making them."""
         tape: list[Graph] = []
-        self._tape, self._capturing = tape, get_ident()
+        self._capture.tape, self._capture.thread = tape, get_ident()
         try:
             for launch in launches:
                 launch.launch()
         finally:
-            self._tape = self._capturing = None
+            self._capture.tape = self._capture.thread = None
 
         def replay() -> None:
             """Make them, one after the other."""
@@ -131,12 +151,12 @@ class EmulatedLauncher:
         Raises:
             RuntimeError: If another thread captures: a card would end both with error 906.
         """
-        if self._capturing not in (None, get_ident()):
+        if self._capture.thread not in (None, get_ident()):
             raise RuntimeError("a launch while another thread captures")
-        if self._tape is None:
+        if self._capture.tape is None:
             launch()
         else:
-            self._tape.append(launch)
+            self._capture.tape.append(launch)
 
     def copy(self, target: wp.array, source: wp.array, size: int) -> None:
         """Copy bytes.
@@ -144,10 +164,21 @@ class EmulatedLauncher:
         Raises:
             RuntimeError: If a sequence is being captured: a card would end it with error 906.
         """
-        if self._capturing is not None:
+        if self._capture.thread is not None:
             raise RuntimeError("a copy while a sequence is captured")
         with WARP:
             wp.copy(target, source, count=size)
+
+    def launch(self, launch: Any) -> None:
+        """Make a recorded launch."""
+        with WARP:
+            launch.launch()
+
+    def mark(self) -> None:
+        """All is done already."""
+
+    def wait(self, mark: None) -> None:
+        """All is done already."""
 
 
 class EmulatedLaunch:

@@ -10,6 +10,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import accumulate
+from threading import RLock
 from typing import Any
 
 import numpy as np
@@ -38,11 +39,12 @@ class ArrayRows:
 class Staging:
     """The way to and from a card.
 
-    All methods are called by who holds the lock of Warp.
+    All methods are called by who holds `turn`, and none by who holds the lock of Warp: some wait,
+    and other threads launch meanwhile.
 
     Args:
         device: Warp's device.
-        launcher: Records launches there.
+        launcher: Launches and copies there, on a stream of its own.
         traffic: Counts copies, launches and waits.
     """
 
@@ -50,6 +52,8 @@ class Staging:
         self._device = device
         self._launcher = launcher
         self._traffic = traffic
+        self.turn = RLock()
+        """Held by whoever uses it: threads that share it take turns."""
         self._waiting: dict[int, tuple[wp.array, np.ndarray]] = {}
         self._sent: Any = None
         self._reserve(1 << 16)
@@ -122,8 +126,7 @@ class Staging:
     def wait(self) -> None:
         """Wait until everything launched so far is done."""
         self._traffic[WAITS] += 1
-        with WARP:
-            wp.synchronize_device(self._device)
+        self._launcher.wait(self._launcher.mark())
         self._sent = None
 
     def _send_alone(self, array: wp.array, kept: np.ndarray) -> None:
@@ -149,7 +152,7 @@ class Staging:
                 argument, Table(numbers + [0] * (MOST_PIECES * ROW - len(numbers)))
             )
             launch.set_dim(len(some) * LANES)
-            launch.launch()
+            self._launcher.launch(launch)
             self._traffic[LAUNCHES] += 1
 
     def _reserve(self, size: int) -> None:
@@ -159,7 +162,7 @@ class Staging:
         self.wait()
         room = size * 3 // 2 // WORD * WORD + WORD
         is_card = bool(self._device.is_cuda)
-        with WARP:
+        with WARP, self._launcher.on_stream():
             self._pinned = wp.empty(room, dtype=wp.uint8, device="cpu", pinned=is_card)
             self._on_card = wp.empty(room, dtype=wp.uint8, device=self._device)
             self._seen: np.ndarray = self._pinned.numpy()
@@ -171,16 +174,12 @@ class Staging:
 
     def _mark_sent(self) -> None:
         """Remember when the pinned memory may be used again."""
-        if self._device.is_cuda:
-            with WARP:
-                self._sent = wp.get_stream(self._device).record_event()
+        self._sent = self._launcher.mark()
 
     def _wait_for_sent(self) -> None:
         """Wait until the pinned memory may be used again."""
-        if self._sent is not None:
-            with WARP:
-                wp.synchronize_event(self._sent)
-            self._sent = None
+        self._launcher.wait(self._sent)
+        self._sent = None
 
 
 def _host_row(array: wp.array) -> tuple[np.dtype[Any], tuple[int, ...]]:

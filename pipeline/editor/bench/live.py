@@ -72,7 +72,7 @@ class Live:
     """
 
     def __init__(self, device: Device, options: SolveOptions, frame: Frame, worked: Worked) -> None:
-        self._device, self._solving = device, options.triangulate
+        self._device, self._solving = device.beside(), options.triangulate
         self._space = SPACES[self._solving.space]()
         self._topology = TOPOLOGIES[self._solving.topology]()
         self.frame, self.worked, self.steps = frame, worked, 0
