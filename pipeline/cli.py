@@ -5,28 +5,18 @@ option come at once.
 """
 
 import argparse
-import os
-import signal
 import sys
-import threading
 import traceback
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager, contextmanager, nullcontext
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any
 
-from pipeline.commands.crash_watch import watch_for_crashes
-from pipeline.commands.grammar import build_parser
+from pipeline.commands.crash_watch import end_watch, watch_for_crashes
+from pipeline.commands.failure import report_failure, terminable
 from pipeline.commands.inputs import inputs_of, joined, take
 from pipeline.kept_memory import keep_memory, release_spare
-from pipeline.printable import one_line, printable
-
-INTERRUPTED = 130
-TERMINATED = 143
-
-
-class Terminated(BaseException):
-    """SIGTERM, raised in the main thread so that what is open cleans up after itself."""
+from pipeline.printable import printable
 
 
 def main(argv: Sequence[str] | None = None, commands: "Mapping[str, Command] | None" = None) -> int:
@@ -41,29 +31,39 @@ def main(argv: Sequence[str] | None = None, commands: "Mapping[str, Command] | N
         interrupted.
     """
     _print_anything()
-    if argv is None:  # else it is called by a program that takes care of itself
-        watch_for_crashes()
-    parser = build_parser()
-    if not (sys.argv[1:] if argv is None else argv):
-        parser.print_help(sys.stderr)  # a script whose variable was empty must notice
-        return 2
+    if argv is not None:  # it is called by a program that takes care of itself
+        return _run(argv, commands)
+    watch_for_crashes()
+    keep_memory()
     try:
-        arguments = parser.parse_args(joined(sys.argv[1:] if argv is None else argv))
-    except SystemExit as request:
-        return request.code if isinstance(request.code, int) else 2
+        return _run(sys.argv[1:], commands)
+    finally:
+        end_watch()
+
+
+def _run(argv: Sequence[str], commands: "Mapping[str, Command] | None") -> int:
+    """Parse, and do what is wanted; gives the exit code."""
+    arguments = argparse.Namespace(command=None, debug=False)
     try:
-        if argv is None:
-            keep_memory()
-        with _terminable(), _piped(arguments):
+        from pipeline.commands.grammar import build_parser
+
+        parser = build_parser()
+        if not argv:
+            parser.print_help(sys.stderr)  # a script whose variable was empty must notice
+            return 2
+        parser.parse_args(joined(argv), arguments)
+        with terminable(), _piped(arguments):
             if commands is None:
                 _say_at_once(arguments)
             code = (commands or COMMANDS)[arguments.command](arguments)
             sys.stdout.flush()
+    except SystemExit as request:
+        return request.code if isinstance(request.code, int) else 2
     except BaseException as error:  # one place where every failure becomes a line and a code
         release_spare()
         if arguments.debug:
             traceback.print_exc()
-        return _report(error, arguments)
+        return report_failure(error, arguments)
     return code or 0
 
 
@@ -101,7 +101,7 @@ def run_conversion(arguments: argparse.Namespace) -> int:
     """
     from pipeline.commands.several import convert_all
 
-    return convert_all(arguments, _report)
+    return convert_all(arguments, report_failure)
 
 
 def run_edit(arguments: argparse.Namespace) -> None:
@@ -251,6 +251,7 @@ def run_completion(arguments: argparse.Namespace) -> None:
     """
     from pipeline.commands.completion import SHELLS
     from pipeline.commands.completion.words import words_of
+    from pipeline.commands.grammar import build_parser
     from pipeline.timeline.timeline import shipped_timelines
     from stages.moves import MOVES
     from warp_kernels.styles import STYLES
@@ -267,6 +268,8 @@ def run_help(arguments: argparse.Namespace) -> None:
     Args:
         arguments: What the user gave.
     """
+    from pipeline.commands.grammar import build_parser
+
     parser = build_parser()
     known = parser.commands()
     if arguments.topic is None:
@@ -302,68 +305,8 @@ COMMANDS: dict[str, Command] = {
 }
 """What each subcommand runs."""
 
-_OF_FILES = (FileNotFoundError, PermissionError, IsADirectoryError, NotADirectoryError)
-"""What is a file's own fault, however little memory is left."""
 COMPILING = ("animate", "solve", "render")
 """Those that always launch kernels."""
-
-
-def _report(error: BaseException, arguments: argparse.Namespace) -> int:
-    """Tell about a failure in one line.
-
-    Args:
-        error: What ended the command.
-        arguments: What the user gave.
-
-    Returns:
-        The exit code.
-    """
-    from warp_kernels.device.memory import MORE_MEMORY, is_limit_near, is_out_of_memory
-    from warp_kernels.errors import OptionError, TrimotionError
-
-    # Under a limit libraries fail in ways of their own, and options that would fit do not.
-    if (isinstance(error, OptionError) or _is_of_library(error)) and is_limit_near():
-        return _fail(f"out of memory ({error}); {MORE_MEMORY}", 1)
-    if isinstance(error, TrimotionError):
-        return _fail(str(error), error.exit_code)
-    if isinstance(error, KeyboardInterrupt):
-        return _fail(f"interrupted; {_left_over(arguments)}", INTERRUPTED)
-    if isinstance(error, Terminated):
-        return _fail(f"terminated; {_left_over(arguments)}", TERMINATED)
-    if isinstance(error, BrokenPipeError):
-        # The reader of our output left. What is still buffered must not raise at exit.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 1
-    kind = type(error).__name__
-    if isinstance(error, Exception) and is_out_of_memory(error):
-        reason = "" if isinstance(error, MemoryError) else f" ({kind}: {error})"
-        return _fail(f"out of memory{reason}; {MORE_MEMORY}", 1)
-    if isinstance(error, OSError) and error.filename and error.strerror:
-        reason = error.strerror.lower()
-        return _fail(f"{error.filename}: {reason}; check the place, its rights and free space", 1)
-    return _fail(f"internal error ({kind}: {error}); run again with --debug and report it", 1)
-
-
-def _is_of_library(error: BaseException) -> bool:
-    """Whether a file is blamed for what a library said, which may have had another reason."""
-    from warp_kernels.errors import MediaError, OutputError
-
-    told_apart = isinstance(error, OutputError) or isinstance(error.__cause__, _OF_FILES)
-    return isinstance(error, MediaError) and error.__cause__ is not None and not told_apart
-
-
-def _left_over(arguments: argparse.Namespace) -> str:
-    """What an interrupted command leaves."""
-    if arguments.command == "solve" or (arguments.command == "animate" and "track" in arguments):
-        return "the track keeps what was solved, and --resume goes on with it"
-    return "no unfinished file is left"
-
-
-def _fail(text: str, code: int) -> int:
-    from pipeline.progress import tell
-
-    tell(f"trimotion: error: {one_line(text)}", sys.stderr)
-    return code
 
 
 def _print_anything() -> None:
@@ -372,24 +315,6 @@ def _print_anything() -> None:
         reconfigure: Any = getattr(stream, "reconfigure", None)
         if reconfigure is not None:
             reconfigure(errors="backslashreplace")
-
-
-@contextmanager
-def _terminable() -> Iterator[None]:
-    """Raise `Terminated` on SIGTERM while the block runs."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    previous = signal.signal(signal.SIGTERM, _terminate)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGTERM, previous)
-
-
-def _terminate(*_: object) -> NoReturn:
-    signal.signal(signal.SIGTERM, signal.SIG_IGN)  # a second one must not disturb the clean-up
-    raise Terminated
 
 
 if __name__ == "__main__":

@@ -58,6 +58,24 @@ def test_other_ends_are_silent(ending: str) -> None:
     assert (done.stdout, done.stderr) == ("", "")
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems do not tell")
+def test_an_end_without_a_word_is_told_where_memory_is_limited() -> None:
+    """OpenBLAS gives up so; a run that ends by itself says nothing more."""
+    limit = "import resource as r; r.setrlimit(r.RLIMIT_AS, (1 << 40, 1 << 40)); "
+    (line,) = run(limit + "import ctypes; ctypes.CDLL(None).exit(1)").stderr.splitlines()
+    assert line.startswith("trimotion: error: ended by a library or from outside")
+    assert "memory is limited" in line
+    assert "ulimit -v" in line
+    command = f"{limit}import sys; from pipeline.cli import main; sys.exit(main())"
+    done = subprocess.run(
+        [sys.executable, "-c", command, "styles", "--nothing"],
+        capture_output=True,
+        text=True,
+        cwd=ROOT,
+    )
+    assert (done.returncode, len(done.stderr.splitlines())) == (2, 1)
+
+
 def test_the_command_line_is_watched() -> None:
     """And as quick as before to say a mistake."""
     done = subprocess.run(

@@ -2,7 +2,8 @@
 
 FFmpeg and others run inside this process; where one of them aborts it, Python gets no chance to say
 anything. Its fault handler does, into a pipe, and a second process that does nothing else reads the
-pipe. It costs a fork before anything is imported.
+pipe. It costs a fork before anything is imported. Others end it without a word where they get no
+memory (OpenBLAS): a run that never said that it had ended is told of if its memory is limited.
 """
 
 import faulthandler
@@ -10,11 +11,15 @@ import os
 import re
 import signal
 import sys
+from contextlib import suppress
+from typing import IO
 
 from warp_kernels.device.memory import MORE_MEMORY, was_limit_near
 
 _REASON = re.compile(rb"Fatal Python error: ([^\n]+)")
-_kept: list[object] = []
+_DONE = b"done\n"
+"""What is written by a run that ends by itself."""
+_kept: list[IO[bytes]] = []
 """The pipe's end: the fault handler only borrows it."""
 
 
@@ -36,6 +41,13 @@ def watch_for_crashes() -> None:
     faulthandler.enable(end)
 
 
+def end_watch() -> None:
+    """Say that this process ends by itself, whether well or not."""
+    for end in _kept:
+        with suppress(OSError):  # the second process was killed
+            end.write(_DONE)
+
+
 def _report(reading: int, watched: int) -> None:
     """Wait for the other process to end, and say why if it crashed."""
     try:
@@ -45,8 +57,12 @@ def _report(reading: int, watched: int) -> None:
         while part := os.read(reading, 4096):
             told += part
         found = _REASON.search(told)
+        line = None
         if found:
             line = _line(found[1].decode("ascii", "replace").lower(), short)
+        elif _DONE not in told and short is not False:
+            line = f"ended by a library or from outside, and memory is limited; {MORE_MEMORY}"
+        if line is not None:
             os.write(2, f"trimotion: error: {line}\n".encode())
     finally:
         os._exit(0)
