@@ -29,6 +29,7 @@ class SourceKeywords(RangeKeywords, total=False):
     page: int | None
     stream: int | None
     limits: str | None
+    decoder: str
 
 
 class DeviceKeywords(TypedDict, total=False):

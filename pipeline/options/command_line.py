@@ -105,6 +105,7 @@ RANGE_OPTIONS = tuple(
 
 _SOLVING = {
     *("triangles", "motion", "processes", "track", "resume", "fps", "page", "stream", "limits"),
+    "decoder",
     "seed",
     "loop",
 }

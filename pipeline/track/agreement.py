@@ -7,9 +7,9 @@ from pipeline.options.command_line import Option, job_options
 from pipeline.options.edit_log import EditLog
 from pipeline.track.plain_values import CLASS
 
-FREE = frozenset({"source", "frame_range", "limits"})
-"""Fields that may differ: the source is compared by its content, the range by what it joins, and
-limits change nothing of what they let through."""
+FREE = frozenset({"source", "frame_range", "limits", "decoder"})
+"""Fields that may differ: the source is compared by its content, the range by what it joins, limits
+change nothing of what they let through, and frames are the same whoever decodes them."""
 
 NAMES = {
     "of_triangles": "triangles of the --timeline",

@@ -9,7 +9,7 @@ from pipeline.options.command_line import job_options
 from pipeline.options.presets import shipped_presets
 from pipeline.timeline.timeline import shipped_timelines
 from stages.look.output_size import NAMED_SIZES
-from stages.media.writing.codecs import VIDEO_CODECS
+from stages.media.writing.codecs import CARD_CODECS, VIDEO_CODECS
 from stages.toning.grade import Grade
 from stages.toning.palette import PALETTES
 from warp_kernels.styles.color_names import COLOR_NAMES
@@ -21,7 +21,7 @@ LISTED: dict[str, Iterable[str]] = {
     "preset": shipped_presets(),
     "timeline": shipped_timelines(),
     "output_size": NAMED_SIZES,
-    "codec": VIDEO_CODECS,
+    "codec": [*VIDEO_CODECS, *CARD_CODECS],
     "background": COLOR_NAMES,
     "palette": PALETTES,
     "grade": tuple(f"{name}=" for name in Grade.__dataclass_fields__),

@@ -7,6 +7,7 @@ from fractions import Fraction
 from pathlib import Path
 
 import av
+from av.codec.hwaccel import HWAccel
 from av.container import InputContainer
 from av.stream import Disposition
 from av.video.stream import VideoStream
@@ -46,6 +47,7 @@ def open_container(
     rate: Fraction | None = None,
     content: bytes | None = None,
     max_streams: int = Limits.streams,
+    hwaccel: HWAccel | None = None,
 ) -> InputContainer:
     """Open a local file for reading.
 
@@ -55,6 +57,7 @@ def open_container(
         rate: Frames per second of what has no times; None for FFmpeg's 25.
         content: What is read in place of the file's own content, or None.
         max_streams: The most that it may have.
+        hwaccel: What decodes it, or None for the CPU.
 
     Raises:
         MediaError: If there is no such regular file, or its content is no known media format.
@@ -70,7 +73,7 @@ def open_container(
     }
     try:
         place = f"file:{path}" if content is None else io.BytesIO(content)
-        return av.open(place, "r", options=options, **LENIENT)
+        return av.open(place, "r", options=options, hwaccel=hwaccel, **LENIENT)
     except av.error.PermissionError as error:
         raise MediaError(path, "may not be read", "check its permissions") from error
     except av.error.ArgumentError as error:

@@ -6,6 +6,8 @@ from fractions import Fraction
 from stages.media.reading.limits import Limits
 from warp_kernels.errors import OptionError
 
+DECODERS = ("cpu", "cuda")
+"""Who decodes films."""
 MAX_RATE = 1000
 """More frames a second than anything is shown with."""
 
@@ -57,7 +59,20 @@ class ReadOptions:
     )
     """What is believed of a file, see `Limits.parse`; None for its defaults."""
 
+    decoder: str = field(
+        default="cpu",
+        metadata={
+            "help": "who decodes films: cuda takes an NVIDIA card where FFmpeg opens one, else the "
+            "CPU with a note; the frames are the same",
+            "choices": DECODERS,
+            "group": "run",
+        },
+    )
+    """Who decodes films, one of `DECODERS`."""
+
     def __post_init__(self) -> None:
+        if self.decoder not in DECODERS:
+            raise OptionError(f"--decoder {self.decoder}: choose from {', '.join(DECODERS)}")
         if self.fps is not None and not 0 < self.fps <= MAX_RATE:
             raise OptionError(f"--fps {self.fps}: must be above 0 and at most {MAX_RATE}; try 24")
         if self.page is not None and self.page < 1:

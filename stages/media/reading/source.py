@@ -8,9 +8,11 @@ from av.video.frame import VideoFrame
 
 from stages.media.orientation import Orientation, orientation_of
 from stages.media.reading.alpha_decoder import alpha_decoder
+from stages.media.reading.card_decoder import CARD, card_for
 from stages.media.reading.coded_photo import CodedPhoto, open_photo
 from stages.media.reading.container import (
     DAMAGE,
+    ChosenVideo,
     choose_video,
     is_picture,
     open_container,
@@ -75,7 +77,10 @@ class VideoSource:
             pages = self._choose_page()
             self._photo = open_photo(self.path, self.container, self._max_pixels, read.page)
             chosen = self._photo or choose_video(self.container, self.path, read.stream)
-            self.stream, self.notes = chosen.stream, (*chosen.notes, *pages)
+            told = (*chosen.notes, *pages)
+            if read.decoder == CARD and not self.is_picture:
+                chosen, told = self._on_card(chosen, told)
+            self.stream, self.notes = chosen.stream, told
             codec = self.stream.codec_context
             check_size(self.path, codec.width, codec.height, self._max_pixels)
             codec.options = {"max_pixels": str(self._guard)}
@@ -87,6 +92,20 @@ class VideoSource:
             raise
         self._ahead: VideoFrame | None = None
         self._decoded = self._photo.frames() if self._photo else self._decode_all()
+
+    def _on_card(
+        self, chosen: ChosenVideo | CodedPhoto, told: tuple[str, ...]
+    ) -> tuple[ChosenVideo | CodedPhoto, tuple[str, ...]]:
+        """Open the file again for a card to decode, if there is one that can."""
+        read, (card, reason) = self._read, card_for(chosen.stream)
+        if card is None:
+            return chosen, (*told, f"--decoder {CARD}: the CPU decodes: {reason}")
+        self.container.close()
+        most = read.most.streams
+        self.container = open_container(
+            self.path, self._guard, read.fps, max_streams=most, hwaccel=card
+        )
+        return choose_video(self.container, self.path, read.stream), told
 
     def _choose_page(self) -> tuple[str, ...]:
         """Open the page of a TIFF that is wanted, and note that there are others."""

@@ -50,6 +50,10 @@ class VideoCodec:
     """Format for pictures with transparency; None if the codec has none."""
     odd_sizes: bool = False
     """Whether it takes odd sizes although colour is stored at half the size."""
+    quality_name: str = "crf"
+    """Name of its constant-quality option."""
+    twin: str | None = None
+    """Codec that needs no card, where this one does."""
     tag: str | None = None
     """Four letters in mp4 and mov, where the muxer's own choice does not play everywhere."""
 
@@ -77,6 +81,26 @@ without looking for either an encoder works 0.7 of the time for files that are 0
 at the same crf, see docs/speed.md."""
 _YUV = ("yuv420p", "yuv422p", "yuv444p")
 _DEEP = ("yuv420p10le", "yuv422p10le", "yuv444p10le")
+
+
+def _on_card(name: str, twin: str, quality: int, tag: str | None = None) -> VideoCodec:
+    """An encoder of an NVIDIA card.
+
+    Source: FFmpeg's options of NVENC: a constant quality is a variable rate without a target.
+    """
+    return VideoCodec(
+        name,
+        ("yuv420p",) if name == "av1_nvenc" else ("yuv420p", "yuv444p"),
+        quality,
+        0,
+        63 if name == "av1_nvenc" else 51,
+        {"preset": "p4", "rc": "vbr", "b": "0"},
+        presets=tuple(f"p{number}" for number in range(1, 8)),
+        quality_name="cq",
+        twin=twin,
+        tag=tag,
+    )
+
 
 ENCODERS = {
     "h264": VideoCodec(
@@ -125,9 +149,14 @@ ENCODERS = {
         odd_sizes=True,
     ),
     "gif": VideoCodec("gif", ("pal8",), None, 0, 0, {}),
+    "h264_nvenc": _on_card("h264_nvenc", "h264", 19),
+    "hevc_nvenc": _on_card("hevc_nvenc", "h265", 22, tag="hvc1"),
+    "av1_nvenc": _on_card("av1_nvenc", "av1", 28),
 }
 """By the name that users give."""
-VIDEO_CODECS = sorted(ENCODERS.keys() - {"gif"})
+CARD_CODECS = sorted(name for name, encoder in ENCODERS.items() if encoder.twin is not None)
+"""Those that users choose from where there is an NVIDIA card."""
+VIDEO_CODECS = sorted(ENCODERS.keys() - {"gif"} - set(CARD_CODECS))
 """Those that users choose from; a GIF has its own."""
 
 _ALIASES = {
@@ -135,6 +164,7 @@ _ALIASES = {
     "x264": "h264",
     "libx264": "h264",
     "hevc": "h265",
+    "h265_nvenc": "hevc_nvenc",
     "x265": "h265",
     "libx265": "h265",
     "libsvtav1": "av1",
@@ -154,7 +184,10 @@ def find_encoder(codec: str) -> VideoCodec:
     """
     key = _ALIASES.get(codec.lower(), codec.lower())
     if key not in ENCODERS:
-        raise OptionError(f"codec {codec!r}: not known; choose one of {', '.join(VIDEO_CODECS)}")
+        raise OptionError(
+            f"codec {codec!r}: not known; choose one of {', '.join(VIDEO_CODECS)}, "
+            f"with an NVIDIA card also {', '.join(CARD_CODECS)}"
+        )
     encoder = ENCODERS[key]
     if encoder.name not in av.codecs_available:
         raise OptionError(

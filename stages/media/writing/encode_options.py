@@ -32,7 +32,10 @@ class EncodeOptions:
 
     codec: str | None = field(
         default=None,
-        metadata={"help": "video codec: h264, h265, av1, vp9, prores or ffv1 (by the ending)"},
+        metadata={
+            "help": "video codec: h264, h265, av1, vp9, prores or ffv1 (by the ending); on an "
+            "NVIDIA card h264_nvenc, hevc_nvenc, av1_nvenc"
+        },
     )
     crf: int | None = field(
         default=None,

@@ -30,7 +30,7 @@ def settings_of(encoder: VideoCodec, options: EncodeOptions) -> dict[str, str]:
         settings["preset"] = options.encoder_preset
     quality = encoder.quality if options.crf is None else options.crf
     if quality is not None:
-        settings["crf"] = str(quality)
+        settings[encoder.quality_name] = str(quality)
     return settings
 
 
@@ -96,6 +96,11 @@ def try_encoder(
     try:
         open_quietly(codec)
     except DAMAGE as error:
+        if encoder.twin is not None:
+            raise OptionError(
+                f"codec {encoder.name}: no NVIDIA card here encodes {size[0]}x{size[1]} in "
+                f"{pixel_format} ({reason_of(error)}); choose {encoder.twin}"
+            ) from error
         raise OptionError(
             f"{encoder.name} refuses {size[0]}x{size[1]} in {pixel_format} ({reason_of(error)}); "
             "choose another size, codec or pixel format"
