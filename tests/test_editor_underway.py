@@ -53,6 +53,13 @@ def test_a_dropped_vertex_lies_there_at_once(page: Page, server: Served) -> None
         expect(page.locator("#toast")).to_contain_text("what followed was not made either")
     assert log_of(server) == ["move_vertex", "move_vertex"]
     assert_shows_the_mesh(page, server)
+    with waiting(server) as answers:
+        page.mouse.move(*place(page, x + 0.5, y + 1.25))
+        press_and_type(page, "0, -90")
+        page.mouse.click(*place(page, *far_from(page, number)))  # what lies elsewhere is made
+        answers.set()
+        wait_for_edits(page, 3)
+    assert_shows_the_mesh(page, server)
 
 
 @contextmanager
@@ -77,6 +84,21 @@ def press_and_type(page: Page, way: str) -> None:
     page.keyboard.press("g")
     page.keyboard.type(way)
     page.keyboard.press("Enter")
+
+
+def far_from(page: Page, vertex: int) -> list[float]:
+    """The middle of the triangle that is farthest from a vertex."""
+    found: list[float] = page.evaluate(
+        "v => { const m = trimotion.mesh, from = m.at(v);"
+        " const corners = t => m.corners(t).map(c => m.at(c));"
+        " const mean = (all, axis) => all.reduce((sum, p) => sum + p[axis], 0) / 3;"
+        " const middles = Array.from({length: m.triangleCount}, (_, t) => corners(t))"
+        " .map(all => [mean(all, 'x'), mean(all, 'y')]);"
+        " const away = ([x, y]) => Math.hypot(x - from.x, y - from.y);"
+        " return middles.reduce((one, other) => away(one) > away(other) ? one : other); }",
+        vertex,
+    )
+    return found
 
 
 def at(page: Page, vertex: int) -> list[float]:

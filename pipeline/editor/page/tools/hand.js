@@ -59,7 +59,8 @@ export class Hand {
     if (mesh && moving && (moving.to.x !== moving.from.x || moving.to.y !== moving.from.y)) {
       const { vertex, from, to } = moving;
       const edit = { edit: "move_vertex", at: /** @type {[number, number]} */ ([from.x, from.y]), to: [to.x, to.y] };
-      stage.underway.make([edit], { id: mesh.ids[vertex], to });
+      const around = [from, to, ...mesh.neighbours[vertex].map((other) => mesh.at(other))];
+      stage.underway.make([edit], { id: mesh.ids[vertex], to, around });
     }
     stage.repaint();
   }

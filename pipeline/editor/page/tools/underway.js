@@ -3,9 +3,13 @@
  * @typedef {import("../stage.js").Stage} Stage
  * @typedef {import("../stage.js").Point} Point
  * @typedef {import("./plans.js").Edit} Edit
- * @typedef {{id: number, to: Point}} Move a vertex that was dropped, by its id
+ * @typedef {{id: number, to: Point, around: Point[]}} Move a vertex that was dropped, by its id, and between which
+ *   places the mesh looks otherwise
  * @typedef {{move: Move | null, refusal: string}} Errand
  */
+
+/** So near to where it looks otherwise an edit is made there [px of the picture]. */
+const CLOSE = 1;
 
 /** Edits and undos go one after the other; vertices that were dropped lie there at once. */
 export class Underway {
@@ -32,7 +36,7 @@ export class Underway {
     }
     const framed = edits.map(({ edit, ...rest }) => ({ edit, frame: stage.frame, ...rest }));
     // a hand pointed at a mesh in which these lie where they were dropped
-    const seen = this.errands.filter((one) => one.move);
+    const seen = this.errands.filter(({ move }) => move && edits.some((edit) => isNear(edit, move)));
     /** @type {Errand} */
     const errand = { move, refusal: "" };
     this.errands.push(errand);
@@ -88,4 +92,17 @@ export class Underway {
     if (stage.mesh && stage.moving) stage.moving = stage.mesh.carriedOn(stage.moving, stage.mesh);
     stage.hover();
   }
+}
+
+/**
+ * Whether an edit is made where the mesh looks otherwise if a vertex does not move.
+ * @param {Edit} edit
+ * @param {Move} move
+ */
+function isNear({ at, radius = 0 }, { around }) {
+  if (!at) return true; // a region: it may be anywhere
+  return [0, 1].every((axis) => {
+    const sides = around.map(({ x, y }) => (axis ? y : x));
+    return Math.min(...sides) - radius - CLOSE <= at[axis] && at[axis] <= Math.max(...sides) + radius + CLOSE;
+  });
 }
