@@ -4,6 +4,7 @@ from itertools import pairwise
 
 import cv2
 import numpy as np
+import pytest
 
 from stages.flows.dis import Dis
 from stages.flows.passage import Passage
@@ -63,6 +64,31 @@ def test_what_stays_in_sight_is_held_where_the_picture_takes_it() -> None:
     steps, left = held_path(mesh, steps, passage, locks)
     assert np.array_equal(left.vertices, locks.vertices)
     assert np.abs(steps[middle] - (7, -4)).max() < 0.5
+
+
+def turned(degrees: float, zoom: float) -> tuple[Passage, np.ndarray]:
+    """A picture that turns and grows about its middle, and by which matrix places do."""
+    size = SCALE * WIDTH, SCALE * HEIGHT
+    matrix = cv2.getRotationMatrix2D((size[0] / 2 - 0.5, size[1] / 2 - 0.5), degrees, zoom)
+    before = texture(1, size)
+    views = View(before), View(cv2.warpAffine(before, matrix, size, flags=cv2.INTER_CUBIC))
+    return Passage.between(Dis(), *views), matrix[:, :2]
+
+
+@pytest.mark.parametrize(("degrees", "zoom"), [(2.0, 1.0), (0.0, 1.03), (-1.5, 0.98)])
+def test_what_turns_and_stretches_is_held_in_its_place(degrees: float, zoom: float) -> None:
+    """Past bug: the middle of a patch went where its contrast did, and chains drifted."""
+    mesh = large_mesh()
+    size = np.array([mesh.width, mesh.height])
+    middle = ((mesh.vertices > 30) & (mesh.vertices < size - 30)).all(axis=1)
+    locks = NO_LOCKS.adding(vertices=mesh.vertex_ids[middle])
+    passage, matrix = turned(degrees, zoom)
+    steps, _ = passage.follow(mesh.vertices)
+    steps, _ = held_path(mesh, steps, passage, locks)
+    away = mesh.vertices - size / 2
+    misses = np.linalg.norm(steps - (away @ matrix.T - away), axis=1)[middle]
+    assert np.median(misses) < 0.03
+    assert misses.max() < 0.2
 
 
 def held_after(mesh: Mesh, vertices: np.ndarray, pictures: list[np.ndarray]) -> np.ndarray:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from stages.flows import Flow
+from stages.flows.deforming import shapes
 from stages.flows.field import FlowField
 from stages.flows.patch_matching import LINES, unlikeness, vote
 from stages.flows.pursuit import LINES as CLOSE_LINES
@@ -69,7 +70,8 @@ class Passage:
         """
         earlier, later = self.earlier.reduced(CLOSE_LINES), self.later.reduced(CLOSE_LINES)
         scale = np.array([earlier.shape[1] / self.flow.width, earlier.shape[0] / self.flow.height])
-        return pursue(scale * points, scale * steps, earlier, later) / scale
+        turns = shapes(self.flow, points)
+        return pursue(scale * points, scale * steps, turns, earlier, later) / scale
 
     def unlikeness(self, points: np.ndarray, steps: np.ndarray) -> np.ndarray:
         """How much the picture around points looks unlike that around where they went.

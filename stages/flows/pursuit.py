@@ -3,6 +3,8 @@
 import cv2
 import numpy as np
 
+from stages.flows.deforming import settled
+
 LINES = 720
 """Looked at in pictures whose short side is at most this long [px]."""
 WINDOW = 21
@@ -17,7 +19,11 @@ _ENOUGH = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 30, 0.01)
 
 
 def pursue(
-    points: np.ndarray, steps: np.ndarray, earlier: np.ndarray, later: np.ndarray
+    points: np.ndarray,
+    steps: np.ndarray,
+    turns: np.ndarray,
+    earlier: np.ndarray,
+    later: np.ndarray,
 ) -> np.ndarray:
     """Refine the steps of points; where the picture tells nothing they stay as they are.
 
@@ -26,6 +32,7 @@ def pursue(
     Args:
         points: Positions in the earlier picture [px of the pictures], shape [N, 2].
         steps: Estimates of their steps [px of the pictures], shape [N, 2].
+        turns: How motion changes around them [1], shape [N, 2, 2].
         earlier: The earlier picture, grey, shape [h, w] uint8.
         later: The later picture, of the same shape.
 
@@ -34,6 +41,7 @@ def pursue(
 
     Source: Lucas & Kanade, An iterative image registration technique (1981), in pyramids as by
         Bouguet; the check of the way back is that of Kalal et al., Forward-backward error (2010).
+    Deviation: what patches do that turn or stretch is looked at afterwards, see `settled`.
     """
     begin = (points - 0.5).astype(np.float32).reshape(-1, 1, 2)
     guess = (points + steps - 0.5).astype(np.float32).reshape(-1, 1, 2)
@@ -42,8 +50,10 @@ def pursue(
     near = np.linalg.norm((end - guess).reshape(-1, 2), axis=1) <= FURTHEST
     closed = np.linalg.norm((back - begin).reshape(-1, 2), axis=1) <= RETURNS
     told = found & returned & near & closed
-    refined = (end - begin).reshape(-1, 2).astype(np.float64)
-    return np.where(told[:, None], refined, steps)
+    steps = steps.astype(np.float64)
+    refined = (end - begin).reshape(-1, 2).astype(np.float64)[told]
+    steps[told] = settled(points[told], refined, turns[told], earlier, later)
+    return steps
 
 
 def _tracked(
