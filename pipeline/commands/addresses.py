@@ -22,6 +22,8 @@ SPARED = 256 << 20
 LONGEST = 120
 """Letters of a name that are kept, its end."""
 
+_NUMBER = re.compile(r"^\[errno -?\d+\] ")
+"""What the system calls a failure, which tells a user nothing."""
 _ADDRESS = re.compile(r"([A-Za-z][A-Za-z0-9+.-]+)://")
 
 
@@ -64,7 +66,8 @@ def fetched(address: str, folder: Path) -> Path:
             path = folder / _name_in(answer.url)
             _copy(answer, path, address)
     except (OSError, HTTPException, ValueError) as error:  # URLError is an OSError
-        reason = " ".join(str(getattr(error, "reason", None) or error).split()).lower()
+        text = " ".join(str(getattr(error, "reason", None) or error).split()).lower()
+        reason = _NUMBER.sub("", text)
         raise MediaError(address, f"cannot be fetched ({reason})", "check the address") from error
     return path
 
