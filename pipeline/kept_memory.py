@@ -8,9 +8,8 @@ Under a limit the library is kept from looking for room again and again where th
 an arena for each thread it goes on for minutes, a hundred times slower, before it gives up.
 """
 
-import ctypes
-import mmap
 from contextlib import suppress
+from typing import Any
 
 from warp_kernels.device.memory import memory_limit
 
@@ -22,20 +21,24 @@ LARGE = 4 << 20
 """Arrays from this size on come from the system and go back to it [bytes]: pictures."""
 SPARE = 16 << 20
 """Addresses that are set aside under a limit, to tell of its end [bytes]; nothing lies there."""
-_spare: list[mmap.mmap] = []
+_spare: list[Any] = []
 
 
 def keep_memory() -> None:
-    """Set it for this process; where there is no such function nothing is done."""
+    """Set it for this process; where there is no such function, or no memory, nothing is done."""
     try:
+        import ctypes  # not before failures are told: it takes memory itself
+
         setting = ctypes.CDLL(None).mallopt
-    except (AttributeError, OSError, TypeError):  # macOS, musl; Windows names no such library
-        return
+    except (AttributeError, ImportError, MemoryError, OSError, TypeError):
+        return  # macOS, musl; Windows names no such library
     setting(MMAP_THRESHOLD, LARGE)
     setting(TRIM_THRESHOLD, KEPT)
     if memory_limit() is not None:
         setting(ARENA_MAX, 1)
-        with suppress(OSError, ValueError):  # there is no room even for this
+        with suppress(ImportError, MemoryError, OSError, ValueError):  # no room even for this
+            import mmap
+
             _spare.append(mmap.mmap(-1, SPARE))
 
 

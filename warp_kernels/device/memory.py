@@ -19,6 +19,8 @@ MORE_MEMORY = "close other programs, raise the limit (ulimit -v), or try a small
 _NEAR = 0.85
 """Share of a limit beyond which it is taken for the reason of a failure: what was asked for last
 was not granted, and does not count."""
+_LARGEST = 128 << 20
+"""What is asked for at once by those that load libraries and start threads [bytes]."""
 _ROOM = 8 << 20
 """Without so much of it left a frame is not begun [bytes]: libraries crash where a little is
 missing, and the line that tells of it needs some, too."""
@@ -49,7 +51,7 @@ def memory_limit() -> int | None:
 def is_limit_near() -> bool:
     """Whether this process has come near to the limit of its memory, if it has one."""
     limit = memory_limit()
-    return limit is not None and _taken(b"VmPeak:") > _NEAR * limit
+    return limit is not None and _is_near(_taken(b"VmPeak:"), limit)
 
 
 def was_limit_near(process: int) -> bool | None:
@@ -69,7 +71,7 @@ def was_limit_near(process: int) -> bool | None:
         return False if memory_limit() is None else None
     peak = _taken(b"VmPeak:", str(process))
     if limit == resource.RLIM_INFINITY or peak:
-        return limit != resource.RLIM_INFINITY and peak > _NEAR * limit
+        return limit != resource.RLIM_INFINITY and _is_near(peak, limit)
     return None
 
 
@@ -95,6 +97,10 @@ def refuse_if_short(error: BaseException) -> None:
     """
     if is_limit_near():
         raise ShortMemoryError(f"out of memory; {MORE_MEMORY}") from error
+
+
+def _is_near(peak: int, limit: int) -> bool:
+    return peak > min(_NEAR * limit, limit - _LARGEST)
 
 
 def peak_memory() -> int | None:
