@@ -15,10 +15,10 @@ from pipeline.commands.farm.grammar import (
     add_plan_options,
 )
 from pipeline.commands.hearing.grammar import LISTEN_ABOUT, LISTEN_USAGE, add_listen_options
+from pipeline.commands.inputs import add_allow_url
 from pipeline.commands.overview import COMMANDS_HELP
 from pipeline.commands.styles.style_list import registry_help
 from pipeline.commands.unknown import no_command, unknown_arguments
-from pipeline.commands.web import add_allow_url
 from pipeline.options.command_line import add_job_options
 from pipeline.options.values import text_value, whole_number
 from pipeline.printable import one_line

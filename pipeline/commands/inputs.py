@@ -1,4 +1,4 @@
-"""Names on the command line: pipes, and which input is worked on."""
+"""Names on the command line: pipes, addresses, and which input is worked on."""
 
 import argparse
 from collections.abc import Sequence
@@ -49,3 +49,17 @@ def is_pipe(output: str) -> bool:
         output: The name.
     """
     return output == PIPE or (output.startswith("-.") and "/" not in output)
+
+
+def add_allow_url(parser: argparse.ArgumentParser, metavar: str = "INPUT") -> None:
+    """Give a parser the option.
+
+    Args:
+        parser: That of a command.
+        metavar: What its source is called.
+    """
+    parser.add_argument(
+        "--allow-url",
+        action="store_true",
+        help=f"{metavar} may be an http or https address; it is fetched whole, to a temporary file",
+    )

@@ -2,7 +2,7 @@
 
 import argparse
 
-from pipeline.commands.web import add_allow_url
+from pipeline.commands.inputs import add_allow_url
 from pipeline.options.command_line import add_job_options
 from pipeline.options.values import text_value, whole_number
 

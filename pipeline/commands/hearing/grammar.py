@@ -2,7 +2,7 @@
 
 import argparse
 
-from pipeline.commands.web import add_allow_url
+from pipeline.commands.inputs import add_allow_url
 from pipeline.options.values import plain_number, text_value, whole_number
 
 LISTEN_ABOUT = (
