@@ -176,6 +176,28 @@ def test_zoom_leaves_what_is_under_the_pointer(page: Page) -> None:
     assert np.allclose(place(page, 30, 20), (x + 40, y - 10), atol=1)
 
 
+def test_a_window_of_another_size_shows_the_same(page: Page) -> None:
+    """What was seen whole is; and what one looked at stays in the middle."""
+    for width, height in ((700, 420), (1300, 900), (1000, 640)):
+        page.set_viewport_size({"width": width, "height": height})
+        page.wait_for_function("() => trimotion.hasRoom.down === trimotion.canvas.clientHeight")
+        box = page.locator("#stage").bounding_box()
+        assert box is not None
+        (left, top), (right, bottom) = place(page, 0, 0), place(page, 96, 64)
+        gaps = (left - box["x"], box["x"] + box["width"] - right)
+        gaps += (top - box["y"], box["y"] + box["height"] - bottom)
+        assert min(gaps) == pytest.approx(12, abs=1)
+        assert gaps[0] == pytest.approx(gaps[1], abs=1)
+    page.mouse.move(*place(page, 30, 20))
+    page.mouse.wheel(0, -200)
+    middle = "() => { const c = trimotion.canvas; return Object.values("
+    middle += "trimotion.camera.toPicture({x: c.clientWidth / 2, y: c.clientHeight / 2})); }"
+    before = page.evaluate(middle)
+    page.set_viewport_size({"width": 700, "height": 420})
+    page.wait_for_function("() => trimotion.hasRoom.down === trimotion.canvas.clientHeight")
+    assert np.allclose(page.evaluate(middle), before, atol=0.2)
+
+
 def test_a_reload_and_another_window(page: Page, browser: Browser, server: Served) -> None:
     other = browser.new_page(viewport=SIZE)
     other.goto(server.address.url)

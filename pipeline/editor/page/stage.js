@@ -38,7 +38,7 @@ export class Stage {
     this.overlay = new Overlay(overlay);
     this.camera = new Camera();
     this.size = { width: 1, height: 1 };
-    this.isFitted = false;
+    this.hasRoom = { across: 0, down: 0 };
     this.frame = 0;
     this.tool = "edit";
     /** @type {"all" | "vertex" | "edge" | "face"} */
@@ -84,7 +84,7 @@ export class Stage {
     this.commandWatchers = [];
     this.isDirty = false;
     this.painted = () => {};
-    new ResizeObserver(() => this.fitOnce()).observe(canvas);
+    new ResizeObserver(() => this.refit()).observe(canvas);
   }
 
   /** @param {() => void} watcher told of every change of what is chosen */
@@ -245,14 +245,17 @@ export class Stage {
    */
   setSize(width, height) {
     this.size = { width, height };
-    this.fitOnce();
+    if (!this.camera.isFitted) this.refit();
   }
 
-  fitOnce() {
-    if (!this.isFitted && this.size.width > 1 && this.canvas.clientWidth) {
-      this.fit();
-      this.isFitted = true;
-    }
+  /** The stage has another size: what was seen whole stays so, and what was in its middle stays there. */
+  refit() {
+    const { camera, canvas, hasRoom } = this;
+    const [across, down] = [canvas.clientWidth, canvas.clientHeight];
+    if (this.size.width <= 1 || !across) return;
+    if (camera.isFitted || !hasRoom.across) this.fit();
+    else camera.pan((across - hasRoom.across) / 2, (down - hasRoom.down) / 2);
+    this.hasRoom = { across, down };
     this.repaint();
   }
 

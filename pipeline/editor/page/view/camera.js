@@ -10,6 +10,7 @@ export class Camera {
     this.zoom = 1;
     this.x = 0;
     this.y = 0;
+    this.isFitted = false; // and neither moved nor zoomed since
   }
 
   /**
@@ -24,6 +25,7 @@ export class Camera {
     this.zoom = Math.max(LEAST, Math.min((across - room) / width, (down - room) / height));
     this.x = (across - width * this.zoom) / 2;
     this.y = (down - height * this.zoom) / 2;
+    this.isFitted = true;
   }
 
   /**
@@ -36,6 +38,7 @@ export class Camera {
     this.x = under.x - ((under.x - this.x) * zoom) / this.zoom;
     this.y = under.y - ((under.y - this.y) * zoom) / this.zoom;
     this.zoom = zoom;
+    this.isFitted = false;
   }
 
   /**
@@ -45,6 +48,7 @@ export class Camera {
   pan(dx, dy) {
     this.x += dx;
     this.y += dy;
+    this.isFitted = false;
   }
 
   /** @param {Point} at of the picture; @returns {Point} */
