@@ -119,6 +119,9 @@ def test_two_windows_see_each_other(track: Path) -> None:
             other.append([edit(3)], after=1)
         other.undo()
         assert other.append([edit(3)]) == 4
+        assert one.since(1) == (edit(1), edit(3))
+        assert one.since(4) == ()
+        assert one.since(3) is None  # which was undone
         assert one.log.edits == (*SOLVED.edits, edit(1), edit(3))
         with pytest.raises(EditError, match="no edit 5; numbers go from 0 to 4"):
             one.go_to(5)

@@ -17,7 +17,7 @@ from pipeline.editor.bench.command_lines import solve_line
 from pipeline.editor.bench.easel import look_of
 from pipeline.editor.bench.replays import DENSE, Replays
 from pipeline.editor.bench.session import Session
-from pipeline.editor.wire.packed import packed_mesh
+from pipeline.editor.wire.packed import packed_mesh, packed_pixels
 from pipeline.options.build import build_job
 from pipeline.options.edit_log import EditLog
 from pipeline.options.solve_options import SolveOptions
@@ -225,6 +225,13 @@ def test_a_packed_mesh_can_be_read(session: Session) -> None:
     assert place == len(packed)
     assert np.array_equal(found["vertices"].reshape(-1, 2), snapshot.mesh.vertices)
     assert np.array_equal(found["triangles"].reshape(-1, 3), snapshot.mesh.triangles)
+
+
+def test_pictures_are_no_larger_than_browsers_take() -> None:
+    """And a long one keeps its shape."""
+    packed = packed_pixels({"kind": "picture"}, np.full((20_000, 50, 3), 9, dtype=np.uint8))
+    head = json.loads(packed[4 : 4 + int.from_bytes(packed[:4], "little")])
+    assert (head["rows"], head["columns"], head["channels"]) == (6667, 17, 3)
 
 
 def test_looking_leaves_the_track_as_it_was(solved: Path, session: Session) -> None:

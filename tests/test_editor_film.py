@@ -2,6 +2,7 @@
 
 import shutil
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -20,7 +21,7 @@ from stages.hand.split_triangle import SplitTriangle
 from stages.media import open_decoder
 from tests.editing import opened, write_clip_job
 from tests.tracks import CUT, QUICK_FLAGS, rows_of
-from warp_kernels.errors import OptionError, OutputError
+from warp_kernels.errors import EditError, OptionError, OutputError
 
 FIRST, SECOND = Insert(3, (40.0, 30.0), 12.0, 3), SplitTriangle(CUT + 2, (60.0, 40.0))
 
@@ -93,6 +94,21 @@ def test_a_frame_is_seen_before_while_and_after(session: Session) -> None:
     assert len(session.shown(5, view="solved").locks.vertices) > 0
     session.undo()
     assert np.array_equal(session.shown(3).mesh.vertices, before.vertices)
+
+
+def test_windows_on_other_frames_are_in_nobody_s_way(session: Session) -> None:
+    """What the other one did is no reason to refuse an edit, but of the same frame it is."""
+    here, there = (SplitTriangle(frame, (40.0, 30.0)) for frame in (2, 9))
+    first = session.make([here], after=0)
+    second = session.make([there], after=0)
+    live = session.optimise(2, {})
+    with pytest.raises(EditError, match="another window went on"):
+        session.make([replace(here, at=(70.0, 50.0))], after=0, in_live=True)
+    assert session.optimise(2, {}) is not live  # in which that edit was made
+    session.undo()
+    with pytest.raises(EditError, match="another window went on"):
+        session.make([there], after=second)
+    assert session.make([there], after=first) == second + 1
 
 
 def test_what_is_cancelled_changes_nothing(session: Session) -> None:

@@ -95,6 +95,23 @@ class EditJournal:
         with reading(self.path):
             return tuple(self._kept().values())
 
+    def since(self, number: int) -> tuple[Edit, ...] | None:
+        """The edits in force that follow one, in their order; None if it is not in force.
+
+        Args:
+            number: Its number; 0 for all of them.
+
+        Raises:
+            TrackError: If the track is damaged.
+        """
+        with reading(self.path):
+            kept, here = self._kept(), self._here()
+        found = []
+        while here > number:
+            found.append(kept[here].edit)
+            here = kept[here].follows
+        return tuple(found[::-1]) if here == number else None
+
     def append(self, edits: Iterable[Edit], after: int | None = None) -> int:
         """Add edits after the last one in force: either all are kept or none is.
 

@@ -23,8 +23,8 @@ from warp_kernels.color_model import ColorModel
 from warp_kernels.device.device import Device
 from warp_kernels.styles import Style
 
-MOST_ACROSS = 1920
-"""Widest picture that is drawn for the page [px]."""
+MOST_ACROSS, MOST_DOWN = 1920, 4096
+"""Widest and tallest picture that is drawn for the page [px]."""
 MOST_WARDROBES = 6
 """Kinds of looks whose memory is kept."""
 THUMBNAIL_ACROSS = 128
@@ -137,7 +137,8 @@ class Easel:
 
     def _sized(self, look: Look, across: int) -> tuple[Look, Framing]:
         """A look at the size of the page."""
-        scale = min(1.0, across / self._size[0], MOST_ACROSS / self._size[0])
+        width, height = self._size
+        scale = min(1.0, across / width, MOST_ACROSS / width, MOST_DOWN / height)
         look = replace(look, scale=scale, output_size=None)
         return look, look.framing_for(self._size, Fraction(1))
 

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from enum import Enum
 
 from stages.hand import Edit
 from stages.hand.worked import Worked
@@ -12,6 +13,14 @@ DENSE = 64
 """Latest states that are all kept: undo goes through them."""
 SPARSE = 16
 """Of earlier states every so many-th is kept."""
+
+
+class Basis(Enum):
+    """On what a frame's edits are made."""
+
+    FILM = "the track's frame"
+    KEPT = "the frame that was kept before edits were applied"
+    ANEW = "the frame solved by itself: edits with which the track was solved were undone"
 
 
 @dataclass(frozen=True, eq=False)

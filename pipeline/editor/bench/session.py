@@ -3,7 +3,6 @@
 from collections import OrderedDict
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from enum import Enum
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +16,7 @@ from pipeline.editor.bench.film import SolvedFilm
 from pipeline.editor.bench.live import Descent, Live
 from pipeline.editor.bench.members import EVERYWHERE, Members
 from pipeline.editor.bench.pictures import Pictures
-from pipeline.editor.bench.replays import Replays
+from pipeline.editor.bench.replays import Basis, Replays
 from pipeline.options.edit_log import EditLog
 from pipeline.options.look import Look
 from pipeline.options.run import Run
@@ -32,7 +31,7 @@ from stages.media.writing.still_writer import encode_still
 from stages.snapshot import Snapshot
 from warp_kernels.color_model import ColorModel
 from warp_kernels.device.device import Device
-from warp_kernels.errors import EditError, OutputError
+from warp_kernels.errors import EditError, OutputError, TrimotionError
 from warp_kernels.styles import Style
 
 ANYWHERE = Run()
@@ -44,14 +43,6 @@ MOST_FRAMES = 24
 """Frames whose edited states are kept."""
 MOST_FITTED = 8
 """Meshes whose colours are kept."""
-
-
-class Basis(Enum):
-    """On what a frame's edits are made."""
-
-    FILM = "the track's frame"
-    KEPT = "the frame that was kept before edits were applied"
-    ANEW = "the frame solved by itself: edits with which the track was solved were undone"
 
 
 @dataclass(frozen=True, eq=False)
@@ -254,7 +245,7 @@ class Session:
 
         Args:
             edits: The edits.
-            after: Number of the edit that the window saw last.
+            after: Number of the edit that the window saw last; later ones must be of other frames.
             in_live: Whether they were pointed at in the mesh that is being optimised: then they
                 must be possible there as well.
 
@@ -270,8 +261,16 @@ class Session:
             before = worked.get(edit.frame) or self.worked(edit.frame)
             worked[edit.frame] = edit.apply(before)
             check_style(edit)
+        if after is not None and after != (here := self.number):
+            others = self._journal.since(after)
+            is_elsewhere = others is not None and worked.keys().isdisjoint(e.frame for e in others)
+            after = here if is_elsewhere else after
         self._make_live(edits, in_live)
-        return self._journal.append(edits, after)
+        try:
+            return self._journal.append(edits, after)
+        except TrimotionError:
+            self.live = None  # which has them already
+            raise
 
     def _make_live(self, edits: Sequence[Edit], in_live: bool) -> None:
         """Make edits of the mesh that is being optimised; else it begins anew, with all edits."""

@@ -103,7 +103,7 @@ function main() {
       isLost = true;
       element("lost").hidden = false;
       const seen = stage.state.edits ? `What you see is the job with its ${stage.state.edits} edits; all of them are saved. ` : "";
-      element("lost").children[1].textContent = `${seen}Looking for the program… If it has ended, start it again: trimotion edit ${stage.track}`;
+      element("lost").children[1].textContent = `${seen}Looking for the program… If it has ended, start it again and go on in the window that it opens: trimotion edit ${stage.track}`;
     },
     found: () => begin(isLost),
   });

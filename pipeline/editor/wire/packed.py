@@ -16,6 +16,8 @@ from stages.snapshot import Snapshot
 
 KINDS = {"f4": "<f4", "u4": "<u4", "u1": "u1", "f8": "<f8"}
 """Types of arrays."""
+MOST_SIDE = 8192
+"""Longest side of a picture [px]: larger textures there are not everywhere."""
 
 
 def pack(head: Mapping[str, Any], arrays: Mapping[str, tuple[str, np.ndarray]]) -> bytes:
@@ -79,12 +81,14 @@ def packed_work(
 
 
 def packed_pixels(head: Mapping[str, Any], pixels: np.ndarray) -> bytes:
-    """A picture.
+    """A picture; every other pixel of it or so, if it is larger than what browsers take.
 
     Args:
         head: What it is about, with its `kind`; sizes are added.
         pixels: Code values, [H, W, 3 or 4] uint8.
     """
+    each = -(-max(pixels.shape) // MOST_SIDE)
+    pixels = pixels[::each, ::each]
     rows, columns, channels = pixels.shape
     facts = {"columns": columns, "rows": rows, "channels": channels}
     return pack({**head, **facts}, {"pixels": ("u1", pixels)})

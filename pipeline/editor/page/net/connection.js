@@ -1,7 +1,7 @@
 import { unpack } from "./packed.js";
 
-/** How long to wait before the server is looked for again [ms]. */
-const AGAIN = 1000;
+/** How long to wait before the server is looked for again, at first and at most [ms]. */
+const AGAIN = [1000, 15000];
 
 /** The line to the program: questions with answers, and news that come by themselves. */
 export class Connection {
@@ -12,6 +12,7 @@ export class Connection {
   constructor(heard) {
     this.heard = heard;
     this.number = 0;
+    this.pause = AGAIN[0];
     /** @type {Map<number, {done: (reply: any) => void, failed: (error: Error) => void}>} */
     this.waiting = new Map();
     this.open();
@@ -22,13 +23,17 @@ export class Connection {
     address.protocol = address.protocol.replace("http", "ws");
     this.socket = new WebSocket(address);
     this.socket.binaryType = "arraybuffer";
-    this.socket.onopen = () => this.heard.found();
+    this.socket.onopen = () => {
+      this.pause = AGAIN[0];
+      this.heard.found();
+    };
     this.socket.onmessage = (event) => this.hear(event.data);
     this.socket.onclose = () => {
       for (const { failed } of this.waiting.values()) failed(new Error("the connection is lost"));
       this.waiting.clear();
       this.heard.lost();
-      setTimeout(() => this.open(), AGAIN);
+      setTimeout(() => this.open(), this.pause);
+      this.pause = Math.min(AGAIN[1], 1.5 * this.pause); // each time is a line in the program's log
     };
   }
 
