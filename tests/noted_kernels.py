@@ -79,7 +79,7 @@ def note_solver(device: Device, kinds: Sequence[tuple[str, str, bool]]) -> None:
         Nearby(workspace).measure(*nothing)
         Extremes(workspace).measure(1)
         if model.degree == 0:
-            PlainColors(workspace).measure(np.zeros((1, 3)), np.zeros(1, dtype=bool))
+            PlainColors(workspace).measure(np.zeros(1, int), np.zeros((1, 3)), np.zeros(1))
         if sums == "edges":
             survey = Survey(workspace)
             survey.load_topology(np.zeros(3, int), np.zeros(3, int))

@@ -11,10 +11,12 @@ from tests.kernel_samples import frame_of, random_mesh, waves
 from tests.oracles.coverage import covered_pixels, rounded
 from warp_kernels.color_model import COLOR_MODELS
 from warp_kernels.device.device import Device
-from warp_kernels.energy.plain_colors import REACHES, PlainColors
+from warp_kernels.energy.plain_colors import REACH, PlainColors
 from warp_kernels.energy.workspace import Workspace
 
 SIZE = 96
+MOST_NOISE = 8
+"""About the farthest that a pixel of `grained(2.0)` lies from its mean [code values]."""
 PAPER, INK = (250, 251, 252), (20, 30, 40)
 
 
@@ -55,7 +57,7 @@ def led(picture: np.ndarray, mesh: Mesh) -> tuple[np.ndarray, np.ndarray]:
     """The means of triangles, and what they become, [T, 3] each."""
     workspace = workspace_of(picture, mesh)
     means, energies, counts = workspace.fit()
-    plain, _ = plainer(PlainColors(workspace), counts, means, energies)
+    plain, _ = plainer(PlainColors(workspace), counts, means, energies, means)
     return means[:, :, 0], plain[:, :, 0]
 
 
@@ -102,13 +104,13 @@ def test_pixels_are_counted_as_one_by_one() -> None:
     """The kernel's counts, means and spreads are those of the pixels close to the last colour."""
     picture, mesh = letter(grained(2.0)), random_mesh(SIZE, SIZE, 60)
     workspace = workspace_of(picture, mesh)
-    means = workspace.fit()[0][:, :, 0]
-    found = PlainColors(workspace).measure(means, np.ones(mesh.triangle_count, dtype=bool))
+    means, energies, counts = workspace.fit()
+    found = PlainColors(workspace).measure(counts, means[:, :, 0], energies)
     assert (found.counts > 0).sum() > 20
     for triangle in np.flatnonzero(found.counts):
         pixels = pixels_of(picture, mesh, triangle)
         away = np.abs(pixels - found.colors[triangle]).max(axis=1)
-        sure, possible = away < REACHES[-1] - 3, away < REACHES[-1] + 3
+        sure, possible = away < REACH - MOST_NOISE, away < REACH + MOST_NOISE
         assert sure.sum() <= found.counts[triangle] <= possible.sum()
         if sure.sum() == possible.sum():
             close = pixels[sure]

@@ -42,11 +42,12 @@ class Fitting:
             locks: What a person holds.
         """
         place_mesh(self.workspace, mesh)
-        coefficients, energies, counts = self.workspace.fit()
+        best, left, counts = self.workspace.fit()
+        coefficients, energies = best, left
         if earlier is not None:
             coefficients, energies = steadied(earlier, mesh, counts, coefficients, energies)
         if self._plain is not None:
-            coefficients, energies = plainer(self._plain, counts, coefficients, energies)
+            coefficients, energies = plainer(self._plain, counts, best, left, coefficients)
         coefficients, energies, limits = self._limiter.limit(mesh, coefficients, energies)
         model = self.workspace.model
         values = shades(mesh, model, coefficients)

@@ -22,28 +22,33 @@ LEAST_SPREAD = 0.5
 
 
 def plainer(
-    looker: PlainColors, counts: np.ndarray, coefficients: np.ndarray, energies: np.ndarray
+    looker: PlainColors,
+    counts: np.ndarray,
+    means: np.ndarray,
+    left: np.ndarray,
+    colors: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Colours of the larger parts of triangles that lie on plain ground, and what they leave.
 
     Args:
         looker: Looks at the mesh and the picture.
         counts: Pixels of each triangle, [T].
-        coefficients: The colours, as in a snapshot, of one term, [T, 3, 1].
-        energies: What they leave [code value^2 px], [T].
+        means: The best colours, as in a snapshot, of one term, [T, 3, 1].
+        left: What they leave [code value^2 px], [T].
+        colors: What triangles show that keep their own, [T, 3, 1].
 
     Returns:
         Coefficients and energies.
     """
-    asked = energies > 0.5 * CHANNELS * LEAST_SPREAD**2 * counts
-    found = looker.measure(coefficients[:, :, 0], asked)
+    asked = left > 0.5 * CHANNELS * LEAST_SPREAD**2 * counts
+    found = looker.measure(np.where(asked, counts, 0), means[:, :, 0], left)
     others = 1.0 - found.counts / np.maximum(counts, 1)
     shares = _falling(others, *FEW) * _falling(found.spreads, *ALIKE)
-    changes = shares[:, None] * (found.colors - coefficients[:, :, 0])
-    changes[found.counts == 0] = 0.0
-    # beside the mean, which the given colours are but for a trifle
-    added = 0.5 * counts * np.square(changes).sum(axis=1)
-    return coefficients + changes[:, :, None], energies + added
+    shares[found.counts == 0] = 0.0
+    colors = colors + shares[:, None, None] * (found.colors[:, :, None] - colors)
+    # a colour that is d away from the mean costs half of d^2 for every pixel
+    costs = 0.5 * counts * np.square(colors - means).sum(axis=(1, 2))
+    return colors, left + costs
 
 
 def _falling(values: np.ndarray, begin: float, end: float) -> np.ndarray:
