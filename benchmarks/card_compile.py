@@ -103,8 +103,8 @@ def _compile(number: int) -> Compiled:
 
 
 def _name(kernel: Any) -> str:
-    """A name that stays while code changes: where it stands among those of its function."""
-    alike = [k for k in kernels_of_card() if k.func.__qualname__ == kernel.func.__qualname__]
+    """A name that stays while code changes: where it stands among those of that name."""
+    alike = [k for k in kernels_of_card() if k.func.__name__ == kernel.func.__name__]
     return f"{kernel.func.__name__}-{alike.index(kernel)}"
 
 

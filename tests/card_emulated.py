@@ -37,6 +37,7 @@ from warp_kernels.device.staging import ArrayRows
 from warp_kernels.energy.sums import SUMS
 from warp_kernels.energy.topology_survey import Survey
 from warp_kernels.energy.workspace import Workspace
+from warp_kernels.errors import TrimotionError
 from warp_kernels.styles import STYLES
 
 SIZE = (61, 47)
@@ -217,6 +218,26 @@ def test_a_copy_during_a_capture_is_found(device: str) -> None:
     phase = Phase([Intruder(shared)], lambda number, begin, end: None, 1, 1)
     with pytest.raises(RuntimeError, match="captured"):
         shared.run([phase])
+
+
+class TooMuch(Intruder):
+    """A launch for which a card has no memory."""
+
+    def launch(self) -> None:
+        """Say what Warp says."""
+        raise RuntimeError("Failed to allocate 8 bytes on device 'cuda:0'")
+
+
+def test_a_full_card_is_told_in_one_line(device: str) -> None:
+    """Wherever it is noticed: allocations say what would fit, and all else what to do."""
+    shared = Device(device)
+    phase = Phase([TooMuch(shared)], lambda number, begin, end: None, 1, 1)
+    with pytest.raises(TrimotionError, match=r"^--device cuda-emulated: out of memory; .*cpu$"):
+        shared.run([phase])
+    array = shared.empty(3, int)  # who is refused leaves the card to others
+    shared.write(array, np.arange(3))
+    np.testing.assert_array_equal(shared.beside().read(array, 0), [])
+    np.testing.assert_array_equal(shared.read(array, 3), [0, 1, 2])
 
 
 def test_staged_copies_keep_their_order(device: str) -> None:

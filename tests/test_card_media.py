@@ -9,8 +9,8 @@ import pytest
 
 import trimotion
 from stages.media import open_decoder
+from stages.media.card_decoder import EXACT
 from stages.media.color.yuv import RgbReader, read_color
-from stages.media.reading.card_decoder import EXACT
 from stages.media.reading.read_options import ReadOptions
 from stages.media.writing.codecs import CARD_CODECS, find_encoder
 from stages.media.writing.encode_options import EncodeOptions

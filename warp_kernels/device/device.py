@@ -29,6 +29,7 @@ from warp_kernels.device.phase import SMALLEST_PART, Phase
 from warp_kernels.device.runtime import EMULATED, WARP, find_device, unused_card
 from warp_kernels.device.staging import LAUNCHES, ArrayRows, Staging
 from warp_kernels.device.team import Team
+from warp_kernels.device.turn import Turn
 from warp_kernels.errors import TrimotionError
 
 
@@ -67,9 +68,12 @@ class Device:
         self._taken = 0
         self.traffic: Counter[str] = Counter()
         """Copies, launches and waits so far, on a card."""
-        self._staging = self._new_staging() if self.is_cuda else None
         # who waits for a card lets others launch there meanwhile
-        self._turn = WARP if self._staging is None else self._staging.turn
+        self._turn: Any = WARP
+        self._staging: Staging | None = None
+        if self.is_cuda:
+            self._turn = Turn(self.name)
+            self._staging = self._new_staging(self._turn)
         self._is_closed = False
         self._team = self._new_team()
 
@@ -85,9 +89,10 @@ class Device:
         other._begin(self._launcher.beside())
         return other
 
-    def _new_staging(self) -> Staging:
+    def _new_staging(self, turn: Turn) -> Staging:
         """The way to and from a card."""
-        return Staging(self.warp, self._launcher, self.traffic)
+        with turn:
+            return Staging(self.warp, self._launcher, self.traffic, turn)
 
     def _new_team(self) -> Team:
         """Threads that end when nobody refers to the device any more."""
@@ -128,7 +133,7 @@ class Device:
         flows_on: bool = False,
     ) -> Phase:
         """Record the launch of `kernel`, split over the threads; see `Phase`, also for its size."""
-        with WARP, self._launcher.on_stream():
+        with self._turn, WARP, self._launcher.on_stream():
             spans = [wp.zeros(1, dtype=wp.vec2i, device=self.warp) for _ in range(self.part_count)]
             parts = [self._launcher.record(kernel, [span, *inputs, *outputs]) for span in spans]
         return Phase(parts, self._span_writer(spans), per_element, smallest_part, flows_on)

@@ -10,7 +10,6 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import accumulate
-from threading import RLock
 from typing import Any
 
 import numpy as np
@@ -19,6 +18,7 @@ import warp as wp
 from warp_kernels.device.launcher import Launcher
 from warp_kernels.device.runtime import WARP
 from warp_kernels.device.spread import LANES, MOST_PIECES, ROW, WORD, Table, gather, scatter
+from warp_kernels.device.turn import Turn
 
 LARGE = 1 << 20
 """Arrays of more bytes are copied alone: another copy on the card would cost more."""
@@ -46,13 +46,14 @@ class Staging:
         device: Warp's device.
         launcher: Launches and copies there, on a stream of its own.
         traffic: Counts copies, launches and waits.
+        turn: Who uses it.
     """
 
-    def __init__(self, device: Any, launcher: Launcher, traffic: Counter[str]) -> None:
+    def __init__(self, device: Any, launcher: Launcher, traffic: Counter[str], turn: Turn) -> None:
         self._device = device
         self._launcher = launcher
         self._traffic = traffic
-        self.turn = RLock()
+        self.turn = turn
         """Held by whoever uses it: threads that share it take turns."""
         self._waiting: dict[int, tuple[wp.array, np.ndarray]] = {}
         self._sent: Any = None

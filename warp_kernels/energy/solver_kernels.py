@@ -7,6 +7,7 @@ from typing import Any
 
 from warp_kernels.color_model import ColorModel
 from warp_kernels.device.device import Device
+from warp_kernels.energy.card_splits import choice_kernel, trial_kernel
 from warp_kernels.energy.color_bands import sift, widen_bands
 from warp_kernels.energy.color_extremes import find_extremes
 from warp_kernels.energy.fit import fit_kernel
@@ -37,7 +38,10 @@ def solving_kernels(
         weighted: Whether pictures come with weights.
     """
     layout = layout_of_moments(model, weighted=weighted)
-    return [*(CHANGES[change](layout) for change in SLOWEST), *_own(device, model, sums, weighted)]
+    changes = [CHANGES[change](layout) for change in SLOWEST]
+    if device.is_cuda:
+        changes = [trial_kernel(layout), *changes[1:], choice_kernel(layout)]
+    return [*changes, *_own(device, model, sums, weighted)]
 
 
 def limiting_kernels(device: Device, model: ColorModel, drawn: ColorModel) -> list[Any]:
@@ -68,6 +72,6 @@ def _own(device: Device, model: ColorModel, sums: str, weighted: bool) -> list[A
     else:
         moments = fragment_kernel(layout)
     along, _ = edge_kernel(device, layout, 1)
-    energies = energy_kernel(layout, sums)
+    energies = energy_kernel(layout, sums, on_card=device.is_cuda)
     tables, _ = table_kernel(device, layout)
     return [moments, energies, fit_kernel(layout), along, descend, tables]

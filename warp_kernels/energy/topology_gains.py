@@ -23,7 +23,7 @@ SPLIT_PLACES = ((0.5, 0.0), (0.3, 0.0), (0.7, 0.0), (0.5, 0.3), (0.5, -0.3))
 """Where a new vertex is tried: how far along the edge, and from there how far towards the corner
 across it, on the left (above 0) or on the right. Edges on the border use those on the edge."""
 
-_PLACES = wp.types.matrix(shape=(len(SPLIT_PLACES), 2), dtype=wp.float64)(
+PLACES = wp.types.matrix(shape=(len(SPLIT_PLACES), 2), dtype=wp.float64)(
     *(number for place in SPLIT_PLACES for number in place)
 )
 
@@ -178,7 +178,7 @@ def _split_kernel(layout: MomentLayout) -> Any:
         db = known(corner_before(wp.max(twin, 0)), ground)
         best = -wp.float64(wp.static(IMPOSSIBLE))
         point = wp.float64(0.5) * (a + b)
-        places = wp.static(_PLACES)
+        places = wp.static(PLACES)
         place = int(0)
         while place < wp.static(len(SPLIT_PLACES)):  # a loop takes a third of the time to compile
             lift = places[place, 1]

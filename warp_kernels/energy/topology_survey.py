@@ -5,6 +5,7 @@ import warp as wp
 
 from warp_kernels.device.phase import Phase
 from warp_kernels.device.staging import ArrayRows
+from warp_kernels.energy.card_splits import TRIED, record_card_splits
 from warp_kernels.energy.topology_gains import record_changes
 from warp_kernels.energy.topology_inputs import ground_type
 from warp_kernels.energy.workspace import Workspace
@@ -31,7 +32,7 @@ class Survey:
         self._limits = workspace.device.empty(2, wp.float64)
         self.limit(0.0, np.inf)
         self._capacity = 0
-        self._phases: dict[tuple[str, int, int], Phase] = {}
+        self._phases: dict[tuple[str, int, int], tuple[Phase, ...]] = {}
 
     def limit(self, least_height: float, largest_area: float) -> None:
         """Bar changes that would make a triangle thinner [px] or larger [px^2] than this."""
@@ -59,6 +60,7 @@ class Survey:
             self._changes = {name: device.empty(self._capacity, wp.float64) for name in CHANGES}
             self._points = device.empty(self._capacity, wp.vec2d)
             if self._measures_all:
+                self._trials = device.empty(self._capacity * TRIED, wp.float64)
                 device.write(self._half_edges, np.arange(self._capacity))
         device.write(self._twins, twins)
         device.write(self._corners, corners)
@@ -90,26 +92,28 @@ class Survey:
             return [found[half_edges] for found in self._known[change]]
         device = self._workspace.device
         device.write(self._half_edges, half_edges)
-        device.run([self._phase(change, len(half_edges))])
+        device.run(self._launches(change, len(half_edges)))
         return device.read_all([ArrayRows(found, len(half_edges)) for found in self._found(change)])
 
     def _measure_all(self) -> None:
         """Look at every half-edge for every change."""
         device = self._workspace.device
-        device.run([self._phase(change, self._count) for change in CHANGES])
+        launches = (self._launches(change, self._count) for change in CHANGES)
+        device.run([phase for phases in launches for phase in phases])
         arrays = [found for change in CHANGES for found in self._found(change)]
         read = iter(device.read_all([ArrayRows(array, self._count) for array in arrays]))
         self._known = {change: [next(read) for _ in self._found(change)] for change in CHANGES}
 
-    def _phase(self, change: str, count: int) -> Phase:
+    def _launches(self, change: str, count: int) -> tuple[Phase, ...]:
         """What measures so many half-edges."""
         key = (change, self._workspace.generation, self._workspace.standing.ptr)
         if key not in self._phases:
             self._phases[key] = self._record(change)
-        self._phases[key].resize(count)
+        for phase in self._phases[key]:
+            phase.resize(count)
         return self._phases[key]
 
-    def _record(self, change: str) -> Phase:
+    def _record(self, change: str) -> tuple[Phase, ...]:
         workspace = self._workspace
         ground = ground_type(workspace.layout)()
         ground.half_edges = self._half_edges
@@ -125,7 +129,17 @@ class Survey:
         ground.limits = self._limits
         ground.width, ground.height = workspace.size
         found = self._found(change)
-        return record_changes(workspace.device, workspace.layout, change, ground, found)
+        if change == "split" and self._measures_all:
+            gains, points = found
+            return record_card_splits(
+                workspace.device,
+                workspace.layout,
+                ground,
+                trials_out=self._trials,
+                gains_out=gains,
+                points_out=points,
+            )
+        return (record_changes(workspace.device, workspace.layout, change, ground, found),)
 
     def _found(self, change: str) -> list[wp.array]:
         """What is found of a change: for splits their places as well."""

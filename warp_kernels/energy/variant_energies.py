@@ -79,6 +79,52 @@ def _edge_energy_kernel(layout: MomentLayout) -> Any:
 
 
 @cache
+def _card_energy_kernel(layout: MomentLayout) -> Any:
+    types = moment_types(layout)
+    side_color, side_area = side_sums(layout)
+    fit = fit_moments(layout)
+
+    @wp.kernel(module="unique", module_options=EXACT)
+    def solve_variant(
+        span: wp.array(dtype=wp.vec2i),
+        # In:
+        triangles: wp.array(dtype=wp.vec3i),
+        moved: wp.array(dtype=int),
+        sides: wp.array(dtype=wp.vec3i),
+        color_sums: wp.array3d(dtype=types.integer),
+        area_sums: wp.array3d(dtype=types.integer),
+        gauge: wp.array(dtype=wp.vec3d),
+        # Out:
+        energies_out: wp.array2d(dtype=wp.float64),
+    ):
+        """Solve one variant of one triangle: a card has more threads than a mesh has triangles."""
+        number = span[0][0] + wp.tid()
+        if number >= span[0][1]:
+            return
+        triangle = number / wp.static(TRIANGLE_VARIANTS)
+        variant = number - triangle * wp.static(TRIANGLE_VARIANTS)
+        if not triangle_is_due(moved, triangles[triangle]):
+            return  # the energies of a triangle at rest still stand
+        side = sides[triangle]
+        corner = wp.max(variant - 1, 0) / wp.static(DIRECTIONS)
+        direction = variant - 1 - corner * wp.static(DIRECTIONS)
+        after = side[corner]
+        before = side[(corner + 2) % 3]
+        across = side[(corner + 1) % 3]
+        first, last = int(0), int(0)  # the versions in which nothing is displaced
+        if variant > 0:
+            first = first_version(0, after & 1) + direction
+            last = first_version(1, before & 1) + direction
+        color = side_color(color_sums, across, 0) + side_color(color_sums, after, first)
+        area = side_area(area_sums, across, 0) + side_area(area_sums, after, first)
+        color += side_color(color_sums, before, last)
+        area += side_area(area_sums, before, last)
+        energies_out[triangle, variant] = fit(color, area, gauge[0]).energy
+
+    return solve_variant
+
+
+@cache
 def _fragment_energy_kernel(layout: MomentLayout) -> Any:
     color_type, area_type = moment_types(layout).color, moment_types(layout).area
     fit = fit_moments(layout)
@@ -106,9 +152,11 @@ def _fragment_energy_kernel(layout: MomentLayout) -> Any:
     return solve_variants
 
 
-def energy_kernel(layout: MomentLayout, sums: str) -> Any:
+def energy_kernel(layout: MomentLayout, sums: str, *, on_card: bool = False) -> Any:
     """The kernel that solves variants, for moments that were summed in one of two ways."""
-    return _edge_energy_kernel(layout) if sums == "edges" else _fragment_energy_kernel(layout)
+    if sums != "edges":
+        return _fragment_energy_kernel(layout)
+    return _card_energy_kernel(layout) if on_card else _edge_energy_kernel(layout)
 
 
 def record_energies(
@@ -143,9 +191,10 @@ def record_energies(
     Source: Lawonn & Guenther (2018), Eqs. 4, 13-15 (without the 1 / q of Eq. 13, so that energies
         add up, as Eq. 12 needs).
     """
-    kernel = energy_kernel(layout, sums)
-    if sums == "edges":
-        inputs = [triangles, moved, sides, color_sums, area_sums, gauge]
-        return device.record(kernel, inputs, [energies_out], smallest_part=SMALLEST_PART)
+    kernel = energy_kernel(layout, sums, on_card=device.is_cuda)
     inputs = [sides, color_sums, area_sums, gauge]
+    if sums == "edges":
+        inputs = [triangles, moved, *inputs]
+    if sums == "edges" and not device.is_cuda:
+        return device.record(kernel, inputs, [energies_out], smallest_part=SMALLEST_PART)
     return device.record(kernel, inputs, [energies_out], per_element=TRIANGLE_VARIANTS)

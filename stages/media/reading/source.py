@@ -6,9 +6,9 @@ from pathlib import Path
 
 from av.video.frame import VideoFrame
 
+from stages.media.card_decoder import CARD, card_for
 from stages.media.orientation import Orientation, orientation_of
 from stages.media.reading.alpha_decoder import alpha_decoder
-from stages.media.reading.card_decoder import CARD, card_for
 from stages.media.reading.coded_photo import CodedPhoto, open_photo
 from stages.media.reading.container import (
     DAMAGE,

@@ -12,8 +12,6 @@ import av
 from av.codec.hwaccel import HWAccel
 from av.video.stream import VideoStream
 
-from stages.media.reading.container import DAMAGE, reason_of
-
 CPU, CARD = "cpu", "cuda"
 """Who decodes."""
 EXACT = frozenset({"h264", "hevc", "vp9"})
@@ -39,6 +37,7 @@ def _opened() -> tuple[HWAccel | None, str]:
     """Try a card, once in a process."""
     try:
         av.CodecContext.create("h264", "r", hwaccel=HWAccel(CARD))
-    except (*DAMAGE, NotImplementedError) as error:
-        return None, f"FFmpeg opens no NVIDIA card here ({reason_of(error)})"
+    except (av.FFmpegError, NotImplementedError) as error:
+        reason = str(getattr(error, "strerror", None) or error).lower()
+        return None, f"FFmpeg opens no NVIDIA card here ({reason})"
     return HWAccel(CARD), ""
