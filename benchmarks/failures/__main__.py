@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from time import monotonic
 
+from benchmarks.failures.clusters import cluster_kills
 from benchmarks.failures.disks import full_disks
 from benchmarks.failures.films import LENGTH, QUICK, QUIET, SHOTS, done, write_film
 from benchmarks.failures.kills import kills
@@ -31,6 +32,7 @@ def main() -> None:
     given = parser.parse_args()
     kinds: dict[str, Callable[[Path], Iterator[Row]]] = {
         "kills": lambda folder: kills(folder, given.kills, given.seed),
+        "clusters": lambda folder: cluster_kills(folder, given.kills, given.seed),
         "memory": lambda folder: short_memory(folder, given.kills, given.seed),
         "disks": full_disks,
         "places": places,
