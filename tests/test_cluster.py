@@ -10,13 +10,15 @@ from pathlib import Path
 import pytest
 
 from pipeline.cli import main
-from pipeline.farm.cluster.crew import _check_versions
+from pipeline.farm.cluster.crew import ClusterError, Crew, _check_versions
 from pipeline.farm.cluster.runner import OnCluster
-from pipeline.farm.cluster.worker import Greeting
+from pipeline.farm.cluster.worker import Errand, Greeting
 from pipeline.loop.animate import solve
+from pipeline.loop.ranges import Part, Work
 from pipeline.progress import Progress
-from pipeline.track import TrackReader
+from pipeline.track import TrackReader, identity_of
 from pipeline.version import library_versions, program_version
+from stages.media import FrameRange
 from tests import media_samples as samples
 from tests.jobs import job_of
 from tests.tracks import QUICK, rows_of
@@ -160,6 +162,41 @@ def test_command(film: Path, whole: dict, cluster: Mapping, tmp_path: Path, caps
     captured = capsys.readouterr()
     assert captured.err.count("\n") == 1
     assert "cuda:99" in captured.err
+
+
+class Unreachable:
+    """A client whose scheduler is gone: some calls fail by what is lost, others anyhow."""
+
+    def __init__(self, status: str, error: Exception) -> None:
+        self.status, self.error = status, error
+
+    def run_on_scheduler(self, _: object) -> None:
+        """Fail."""
+        raise self.error
+
+
+@pytest.mark.parametrize(
+    ("status", "error", "raised"),
+    [
+        ("running", distributed.comm.CommClosedError("ConnectionPool closing."), ClusterError),
+        ("closed", RuntimeError("IOLoop is closed"), ClusterError),
+        ("running", RuntimeError("a fault of the program"), RuntimeError),
+        ("running", FileNotFoundError(2, "no such file"), FileNotFoundError),
+    ],
+    ids=["lost", "closed", "fault", "file"],
+)
+def test_a_scheduler_that_is_gone_is_told(
+    status: str, error: Exception, raised: type[Exception], film: Path, tmp_path: Path
+) -> None:
+    """And how to go on; faults of another kind stay what they are."""
+    job = job_of(film, track=tmp_path / "t.mtrk", triangulate=QUICK)
+    part = Part(FrameRange(0, 3), job.output)
+    errand = Errand("token", identity_of(film), tmp_path / "token.mark", film)
+    work = Work(job.solve, job.run, job.fitted)
+    with pytest.raises(raised) as found:
+        Crew(Unreachable(status, error), errand, work, [part]).results(Progress())
+    told = "the scheduler is gone" in str(found.value) and "--resume" in str(found.value)
+    assert told == (raised is ClusterError)
 
 
 def test_other_versions_are_refused() -> None:

@@ -170,7 +170,7 @@ def _left(folder: Path, command: Command, victim: str, code: int, said: str) -> 
             return f"exit code {code}: {said}"
     elif code not in (0, 1):
         return f"exit code {code}: {said}"
-    if code > 0 and not is_one_line(said):
+    if code > 0 and (not is_one_line(said) or "internal error" in said):
         return f"is told badly: {said}"
     output = folder / command.output
     if code and output.exists() and output.suffix != ".mtrk":

@@ -38,7 +38,8 @@ def connected(address: str) -> Iterator[Any]:
         TrimotionError: If nothing answers there.
     """
     distributed = _imported(address)
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # lost workers are told in a line
+    for name in ("distributed", "distributed.client"):  # what is lost is told in a line
+        logging.getLogger(name).setLevel(logging.CRITICAL)
     local = _LOCAL.fullmatch(address)
     with ExitStack() as stack, warnings.catch_warnings():
         warnings.simplefilter("ignore")  # Dask's own about versions: those that matter are compared

@@ -110,9 +110,11 @@ class Crew:
             ClusterError: If a shot cannot be solved, or nobody is left to do it.
             OptionError: If workers have other versions.
         """
-        self._look_around()
+        with self._scheduled():
+            self._look_around()
         while len(self._found) < len(self._parts):
-            self._hand_out()
+            with self._scheduled():
+                self._hand_out()
             try:
                 event = self._events.get(timeout=WAIT)
             except Empty:
@@ -121,10 +123,27 @@ class Crew:
                 for triangles, rmse in event[1]:
                     progress.frame(0, None, triangles, rmse)
             elif event is not None:
-                self._take_in(event)
+                with self._scheduled():
+                    self._take_in(event)
             if monotonic() - self._looked > LOOK:
-                self._look_around()
+                with self._scheduled():
+                    self._look_around()
         return self._found
+
+    @contextmanager
+    def _scheduled(self) -> Iterator[None]:
+        """Say so if the scheduler is gone; Dask has many errors for that, some without a name."""
+        try:
+            yield
+        except TrimotionError:
+            raise
+        except Exception as error:
+            lost = isinstance(error, OSError) and error.errno is None  # a connection's
+            if self._client.status == "running" and not lost:
+                raise
+            raise ClusterError(
+                "the scheduler is gone; start one, with workers, and go on with --resume"
+            ) from error
 
     def _hand_out(self) -> None:
         """Give everybody something to do."""
