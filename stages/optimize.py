@@ -7,6 +7,20 @@ from stages.optimize_options import OptimizeOptions
 from warp_kernels.energy.workspace import DISPLACEMENT, Workspace
 from warp_kernels.moments.due import BESIDE, MOVED
 
+PROBE = 0.12
+"""Variants are displaced by no more than this part of the side of a square as large as a mean
+triangle: wider ones look past small triangles."""
+
+
+def probe_of(mesh: Mesh, widest: float) -> float:
+    """How far the variants that give the slope are displaced [px].
+
+    Args:
+        mesh: Tells how large triangles are.
+        widest: Where triangles are large [px].
+    """
+    return min(widest, PROBE * float(np.sqrt(mesh.width * mesh.height / mesh.triangle_count)))
+
 
 def load_mesh(
     workspace: Workspace,

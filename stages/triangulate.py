@@ -209,7 +209,8 @@ class Triangulator:
             count = earlier.mesh.triangle_count  # a layout has about as many as were asked for
         goal = self._goal(count, calm=True, unrest=unrest)
         mesh = following.settled(mesh, goal, rounds, rhythm.watch())
-        return self._solution(frame, self._in_use.approximator.within_limits(mesh, goal), earlier)
+        mesh = self._in_use.approximator.within_limits(mesh, goal)
+        return self._solution(frame, mesh, earlier, unrest)
 
     def _renew(self, mesh: Mesh, following: Following, unrest: Unrest, rounds: int) -> Mesh:
         """Refine a mesh anew where it boils, and adapt it elsewhere as always.
@@ -299,10 +300,17 @@ class Triangulator:
         refine = self._options.refine
         return Goal(count, refine.error, calm, refine.largest_area, unrest)
 
-    def _solution(self, frame: Frame, mesh: Mesh, earlier: Snapshot | None = None) -> Snapshot:
+    def _solution(
+        self,
+        frame: Frame,
+        mesh: Mesh,
+        earlier: Snapshot | None = None,
+        unrest: Unrest | None = None,
+    ) -> Snapshot:
         """The snapshot of a mesh that was just optimised, and that the next frame starts from."""
         mesh = rounded_places(mesh)
-        snapshot = self._drawn.snapshot(frame, mesh, earlier, self._locks)
+        calm = None if unrest is None else unrest.calm(mesh)
+        snapshot = self._drawn.snapshot(frame, mesh, earlier, self._locks, calm)
         self._solved = replace(snapshot, energies=self._even.appraiser.energies(mesh))
         return snapshot
 

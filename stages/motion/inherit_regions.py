@@ -3,9 +3,8 @@
 import numpy as np
 
 from stages.mesh import Mesh
-from stages.motion.backtrack import earlier_vertices
+from stages.motion.beneath import Shares, beneath, parts_of
 from stages.motion.correspondence import kept_triangles
-from stages.motion.overlaps import overlaps
 from stages.snapshot import Snapshot, colors_at_centres
 
 PARTS = 8
@@ -26,7 +25,7 @@ def under_mask(mesh: Mesh, mask: np.ndarray) -> np.ndarray:
     Returns:
         Whether each does, [T] bool.
     """
-    points = _points(mesh.vertices[mesh.triangles])
+    points = parts_of(mesh.vertices[mesh.triangles], PARTS)
     columns, rows = (
         np.clip(points[..., axis].astype(int), 0, mask.shape[1 - axis] - 1) for axis in (0, 1)
     )
@@ -55,7 +54,7 @@ def inherited(before: Snapshot, after: Snapshot, members: np.ndarray) -> np.ndar
     born = np.flatnonzero(kept < 0)
     colors = [colors_at_centres(s.mesh, s.model, s.coefficients) for s in (before, after)]
     votes = np.zeros((len(born), members.shape[1]))
-    for voters in (_beneath(before.mesh, mesh, born), _beside(mesh, kept, born)):
+    for voters in (beneath(before.mesh, mesh, born, PARTS), _beside(mesh, kept, born)):
         owners, others, shares = voters
         away = np.square(colors[1][born[owners]] - colors[0][others]).sum(axis=1)
         weights = shares / np.square(1.0 + away / ALIKE**2)
@@ -65,20 +64,7 @@ def inherited(before: Snapshot, after: Snapshot, members: np.ndarray) -> np.ndar
     return found
 
 
-Voters = tuple[np.ndarray, np.ndarray, np.ndarray]
-"""Places among new triangles, numbers of known ones that vote about them, and their shares; [N]."""
-
-
-def _beneath(before: Mesh, mesh: Mesh, born: np.ndarray) -> Voters:
-    """The triangles that lay where new ones lie, by the part of these that they cover."""
-    corners = earlier_vertices(before, mesh)[mesh.triangles[born]]
-    known = before.vertices[before.triangles]
-    spans, links = overlaps(corners, known)
-    owners = np.repeat(np.arange(len(corners)), spans[:, 1] - spans[:, 0])
-    return owners, links, _inside(_points(corners)[owners], known[links]).mean(axis=1)
-
-
-def _beside(mesh: Mesh, kept: np.ndarray, born: np.ndarray) -> Voters:
+def _beside(mesh: Mesh, kept: np.ndarray, born: np.ndarray) -> Shares:
     """The known triangles beside new ones, by the part of their outline that they touch.
 
     Args:
@@ -93,24 +79,3 @@ def _beside(mesh: Mesh, kept: np.ndarray, born: np.ndarray) -> Voters:
     others = np.where(twins >= 0, kept[twins // 3], -1)
     owners, corners = np.nonzero(others >= 0)
     return owners, others[owners, corners], shares[owners, corners]
-
-
-def _points(corners: np.ndarray) -> np.ndarray:
-    """The middles of equal parts of triangles [N, 3, 2], [N, PARTS^2, 2]."""
-    first, second = np.mgrid[:PARTS, :PARTS].reshape(2, -1)
-    upward = np.stack([first, second], axis=1)[first + second < PARTS] + 1 / 3
-    downward = np.stack([first, second], axis=1)[first + second < PARTS - 1] + 2 / 3
-    weights = np.concatenate([upward, downward]) / PARTS
-    sides = corners[:, 1:] - corners[:, :1]
-    return corners[:, :1] + weights @ sides
-
-
-def _inside(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
-    """Whether points [N, P, 2] lie in triangles [N, 3, 2], one for each row, [N, P] bool."""
-    inside = np.ones(points.shape[:2], dtype=bool)
-    for corner in range(3):
-        begin = corners[:, corner, None]
-        side = corners[:, (corner + 1) % 3, None] - begin
-        away = points - begin
-        inside &= side[..., 0] * away[..., 1] - side[..., 1] * away[..., 0] >= 0.0
-    return inside

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from stages.mesh import Mesh
-from stages.optimize import load_mesh, optimize
+from stages.optimize import load_mesh, optimize, probe_of
 from stages.optimize_options import OptimizeOptions
 from stages.solve.convergence import Convergence
 from stages.solve.hold import FREE, Hold
@@ -18,7 +18,7 @@ from stages.topology.exact_count import with_exactly
 from stages.topology.goal import Goal
 from stages.topology.growth import Growth
 from warp_kernels.color_model import CHANNELS
-from warp_kernels.energy.workspace import Workspace
+from warp_kernels.energy.workspace import DISPLACEMENT, Workspace
 
 FEW = 64
 """Triangles of the layout where a threshold decides how many there will be."""
@@ -108,7 +108,8 @@ class Approximator:
         convergence, layout = Convergence(), mesh
         for number in range(1, rounds + 1):
             load_mesh(self.workspace, mesh, self._springs(layout, mesh))
-            mesh = optimize(self.workspace, mesh, ROUND, self.options)
+            probe = probe_of(mesh, DISPLACEMENT)
+            mesh = optimize(self.workspace, mesh, ROUND, self.options, displacement=probe)
             progress = number / rounds
             # on the way the energy falls and rises with the number of triangles
             if progress > growth.settled and convergence.is_reached(self.workspace.last_energy()):

@@ -31,7 +31,12 @@ class Fitting:
         self._plain = PlainColors(workspace) if workspace.model.degree == 0 else None
 
     def snapshot(
-        self, frame: Frame, mesh: Mesh, earlier: Snapshot | None = None, locks: Locks = NO_LOCKS
+        self,
+        frame: Frame,
+        mesh: Mesh,
+        earlier: Snapshot | None = None,
+        locks: Locks = NO_LOCKS,
+        calm: np.ndarray | None = None,
     ) -> Snapshot:
         """Fit colours to a mesh.
 
@@ -40,12 +45,13 @@ class Fitting:
             mesh: The triangles.
             earlier: The frame before, to whose colours they keep if they may; None for the best.
             locks: What a person holds.
+            calm: How far they keep to these at each triangle [0..1], [T]; None for all the way.
         """
         place_mesh(self.workspace, mesh)
         best, left, counts = self.workspace.fit()
         coefficients, energies = best, left
         if earlier is not None:
-            coefficients, energies = steadied(earlier, mesh, counts, coefficients, energies)
+            coefficients, energies = steadied(earlier, mesh, counts, coefficients, energies, calm)
         if self._plain is not None:
             coefficients, energies = plainer(self._plain, counts, best, left, coefficients)
         coefficients, energies, limits = self._limiter.limit(mesh, coefficients, energies)

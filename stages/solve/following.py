@@ -8,15 +8,15 @@ from stages.mesh import Mesh
 from stages.motion.advect import Carried
 from stages.motion.rest import Rest
 from stages.motion.springs import springs_of
-from stages.optimize import load_mesh, optimize
+from stages.optimize import load_mesh, optimize, probe_of
 from stages.optimize_options import OptimizeOptions
 from stages.solve.bench import Bench
 from stages.solve.convergence import Convergence
 from stages.topology.goal import Goal
 
 DISPLACEMENT = 0.75
-"""Distance of the variants in later frames [px]: a wider one finds steadier places, and a narrower
-one those that fit the picture better."""
+"""Distance of the variants in later frames, where triangles are large [px]: a wider one finds
+steadier places, and a narrower one those that fit the picture better."""
 DEAD_BAND = 0.1
 """Steps of later frames below this are not taken [px]: noise must not move what stands still."""
 
@@ -57,7 +57,7 @@ class Following:
             self.iterations,
             self.options,
             dead_band=DEAD_BAND,
-            displacement=DISPLACEMENT,
+            displacement=probe_of(mesh, DISPLACEMENT),
         )
 
     def adapted(self, mesh: Mesh, goal: Goal) -> Mesh:

@@ -58,16 +58,20 @@ class Energy:
     """In a followed picture a flip must save this part of its two triangles' energy."""
     calm_flip_floor: float = 0.04
     """And this part of the mean energy of a triangle: what saves less only flickers."""
-    calm_floor: float = 1.0
+    calm_floor: float = 0.6
     """In a followed picture a vertex moves elsewhere only for this gain per triangle there, as a
     part of the mean energy of a triangle."""
-    calm_relocated: float = 0.04
+    calm_relocated: float = 0.06
     """As `relocated`, in a followed picture."""
     beside_boiling: float = 0.015
     """As `calm_relocated`, where it is calm in a picture that boils in places: such a picture is
     looked at more often."""
-    calm_profit: float = 2.0
+    calm_profit: float = 1.4
     """As `profit`, in a followed picture."""
+    floor_beside_boiling: float = 1.0
+    """As `calm_floor`, in a picture that boils in places."""
+    profit_beside_boiling: float = 2.0
+    """As `calm_profit`, in a picture that boils in places."""
     calm_hold: float = 1.15
     """In a followed picture that boils in places, a vertex where it is calm goes only if one where
     it boils would cost this many times as much."""
@@ -159,7 +163,8 @@ class Energy:
         """What splits of edges must save for a vertex to come from elsewhere, shape [N]."""
         if not goal.calm:
             return np.zeros(len(edges))
-        floors = np.full(len(edges), self.calm_floor * appraiser.energies(mesh).mean())
+        floor = self.calm_floor if goal.unrest is None else self.floor_beside_boiling
+        floors = np.full(len(edges), floor * appraiser.energies(mesh).mean())
         floors *= appraiser.emphasis(edges)
         if goal.unrest is not None:
             floors *= beside_edges(mesh, goal.unrest.calm(mesh), edges)
@@ -209,7 +214,8 @@ class Energy:
         pairs = min(pairs, len(gains))
         profit, floor = self.profit, np.zeros(pairs)
         if goal.calm:
-            profit, floor = self.calm_profit, floors[:pairs]
+            profit = self.calm_profit if goal.unrest is None else self.profit_beside_boiling
+            floor = floors[:pairs]
         worth = np.maximum(profit * costs[excess : excess + pairs], floor)
         elsewhere = gains[:pairs] > worth
         going = going[: excess + int(elsewhere.sum())]
