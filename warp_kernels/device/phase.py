@@ -5,7 +5,7 @@ from typing import Any
 
 SMALLEST_PART = 16
 """Below this many elements a second thread costs more than it saves."""
-STEPS_PER_OCTAVE = 8
+STEPS_PER_OCTAVE = 2
 """Launch sizes between a power of two and the next: a part that grows a little keeps its size."""
 
 
