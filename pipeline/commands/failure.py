@@ -16,6 +16,8 @@ from warp_kernels.errors import MediaError, OptionError, OutputError, TrimotionE
 
 INTERRUPTED = 130
 TERMINATED = 143
+LONGEST = 240
+"""Letters of what a library says that are told beside a lack of memory."""
 _OF_FILES = (FileNotFoundError, PermissionError, IsADirectoryError, NotADirectoryError)
 """What is a file's own fault, however little memory is left."""
 
@@ -49,7 +51,9 @@ def report_failure(error: BaseException, arguments: argparse.Namespace) -> int:
         return 1
     kind = type(error).__name__
     if isinstance(error, Exception) and is_out_of_memory(error):
-        reason = "" if isinstance(error, MemoryError) else f" ({kind}: {error})"
+        text = f"{kind}: {error}"
+        told = text if len(text) < LONGEST else kind  # NumPy writes a page where it cannot load
+        reason = "" if isinstance(error, MemoryError) else f" ({told})"
         return _fail(f"out of memory{reason}; {MORE_MEMORY}", 1)
     if isinstance(error, OSError) and error.filename and error.strerror:
         reason = error.strerror.lower()

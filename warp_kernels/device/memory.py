@@ -19,8 +19,9 @@ MORE_MEMORY = "close other programs, raise the limit (ulimit -v), or try a small
 _NEAR = 0.85
 """Share of a limit beyond which it is taken for the reason of a failure: what was asked for last
 was not granted, and does not count."""
-_LARGEST = 128 << 20
-"""What is asked for at once by those that load libraries and start threads [bytes]."""
+_LARGEST = 320 << 20
+"""What is asked for at once by those that load libraries and start threads [bytes]; Warp's is the
+largest."""
 _ROOM = 8 << 20
 """Without so much of it left a frame is not begun [bytes]: libraries crash where a little is
 missing, and the line that tells of it needs some, too."""
