@@ -17,6 +17,7 @@ from pipeline.commands.failure import report_failure, terminable
 from pipeline.commands.inputs import inputs_of, joined, take
 from pipeline.kept_memory import keep_memory, release_spare
 from pipeline.printable import printable
+from warp_kernels.device.memory import refuse_small_limit
 
 
 def main(argv: Sequence[str] | None = None, commands: "Mapping[str, Command] | None" = None) -> int:
@@ -54,6 +55,8 @@ def _run(argv: Sequence[str], commands: "Mapping[str, Command] | None") -> int:
         parser.parse_args(joined(argv), arguments)
         with terminable(), _piped(arguments):
             if commands is None:
+                if arguments.command in LOADING:
+                    refuse_small_limit()
                 _say_at_once(arguments)
             code = (commands or COMMANDS)[arguments.command](arguments)
             sys.stdout.flush()
@@ -305,6 +308,11 @@ COMMANDS: dict[str, Command] = {
 }
 """What each subcommand runs."""
 
+LOADING = (
+    *("animate", "solve", "render", "edit", "preview", "plan", "join", "info", "measure"),
+    *("listen", "doctor"),
+)
+"""Those that load libraries which take much memory."""
 COMPILING = ("animate", "solve", "render")
 """Those that always launch kernels."""
 

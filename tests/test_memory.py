@@ -77,6 +77,20 @@ def test_near_a_limit_it_is_the_reason() -> None:
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="other systems do not tell")
+def test_too_small_a_limit_is_refused_before_libraries_are_loaded() -> None:
+    """SciPy's OpenBLAS looked for memory for ever, OpenCV's crashed."""
+    limited = "import resource as r; r.setrlimit(r.RLIMIT_AS, (2**28, 2**28)); "
+    run = f"{limited}from pipeline.cli import main; raise SystemExit(main())"
+    command = [sys.executable, "-c", run]
+    done = subprocess.run([*command, "listen", "a.wav"], capture_output=True, text=True, cwd=ROOT)
+    (line,) = done.stderr.splitlines()
+    assert done.returncode == 1
+    assert "limited to 268 MB, at least 734 MB are needed" in line
+    done = subprocess.run([*command, "help"], capture_output=True, text=True, cwd=ROOT)
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems do not tell")
 def test_no_file_is_blamed_near_a_limit() -> None:
     """For what a library said; what is wrong with a file itself is told as ever."""
     command = [sys.executable, "-c", IMPORTS + SCRIPT + BLAMED]

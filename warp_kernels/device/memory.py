@@ -22,6 +22,9 @@ was not granted, and does not count."""
 _LARGEST = 320 << 20
 """What is asked for at once by those that load libraries and start threads [bytes]; Warp's is the
 largest."""
+_LEAST = 700 << 20
+"""Addresses that libraries take before anything is done [bytes]: where they get less, OpenBLAS
+crashes, or looks for them for ever."""
 _ROOM = 8 << 20
 """Without so much of it left a frame is not begun [bytes]: libraries crash where a little is
 missing, and the line that tells of it needs some, too."""
@@ -85,6 +88,20 @@ def refuse_without_room() -> None:
     limit = memory_limit()
     if limit is not None and limit - _taken(b"VmSize:") < _ROOM:
         raise ShortMemoryError(f"out of memory (limited to {limit / 1e6:.0f} MB); {MORE_MEMORY}")
+
+
+def refuse_small_limit() -> None:
+    """Begin nothing where not even the libraries can be loaded.
+
+    Raises:
+        ShortMemoryError: If there is such a limit.
+    """
+    limit = memory_limit()
+    if limit is not None and limit < _LEAST:
+        needed = f"at least {_LEAST / 1e6:.0f} MB are needed"
+        raise ShortMemoryError(
+            f"out of memory (limited to {limit / 1e6:.0f} MB, {needed}); {MORE_MEMORY}"
+        )
 
 
 def refuse_if_short(error: BaseException) -> None:
