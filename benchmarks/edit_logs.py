@@ -1,16 +1,20 @@
 """Long random logs of edits by hand: valid after each, undone and replayed to the bit.
 
-    python -m benchmarks.edit_logs [--edits N] [--seeds N] [--clip CLIP] [--frames A-B]
+    python -m benchmarks.edit_logs [--edits N] [--seeds N] [--first SEED]
+                                   [--clip CLIP] [--frames A-B]
 
 Stills first: a log of so many edits of one mesh. Then a clip: a log of so many edits over all its
 frames. They are looked at one by one, and solved twice, the second time from the log's lines on one
-thread. Without edits it is what a plain run makes.
+thread. Without edits it is what a plain run makes. Some random edits cannot be made: what is told
+of them is counted.
 """
 
 import argparse
+import re
 import sqlite3
 import tempfile
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Iterator, Sequence
 from contextlib import closing, contextmanager
 from pathlib import Path
 from time import perf_counter, process_time
@@ -41,6 +45,9 @@ TRIANGLES = 1500
 CLIP = Path(__file__).parents[1] / "sample_videos" / "shapes.mp4"
 QUICK = TriangulateOptions(frame_iterations=12, refine=RefineOptions(triangles=400))
 """What is asked here does not depend on how well a picture is met."""
+
+MOST_TOLD = 70
+"""Letters by which reasons are told apart."""
 
 
 @contextmanager
@@ -86,6 +93,7 @@ def check_still(seed: int, count: int) -> None:
     made: list[Edit] = []
     refused = 0
     seconds = 0.0
+    told: list[str] = []
     while len(made) < count:
         edit = random_edit(rng, SIZE)
         begun = process_time()
@@ -93,6 +101,7 @@ def check_still(seed: int, count: int) -> None:
         seconds += process_time() - begun
         refused += len(result.refused)
         if result.refused:
+            told += result.refused
             assert result.worked is worked
             continue
         worked = result.worked
@@ -108,6 +117,7 @@ def check_still(seed: int, count: int) -> None:
         f"undone to the bit: {same(undone.mesh, first_mesh(seed))}, "
         f"replayed to the bit: {same(replayed.mesh, worked.mesh)}"
     )
+    _print_kinds(told)
 
 
 def check_clip(clip: Path, frames: FrameRange, seed: int, count: int) -> None:
@@ -121,7 +131,7 @@ def check_clip(clip: Path, frames: FrameRange, seed: int, count: int) -> None:
     with tempfile.TemporaryDirectory() as folder:
         plain, first, again, none = (Path(folder) / f"{n}.mtrk" for n in ("p", "f", "a", "n"))
         with watched_edits() as made:
-            refused, seconds = _solved(clip, frames, log, first)
+            told, seconds = _solved(clip, frames, log, first)
         _solved(clip, frames, from_json_lines(as_json_lines(log), "log"), again, threads=1)
         _solved(clip, frames, EditLog(), none)
         _solved(clip, frames, None, plain)
@@ -130,20 +140,29 @@ def check_clip(clip: Path, frames: FrameRange, seed: int, count: int) -> None:
                 assert_valid(track.snapshot(row.frame).mesh)
         print(
             f"clip, seed {seed}: {count} edits in {len(log.frames)} frames, {len(made)} "
-            f"made, {refused} warnings, {seconds:.0f} s; the mesh is valid after each edit and in "
-            f"all {len(_rows(first))} frames, undone to the bit: "
+            f"made, {len(told)} warnings, {seconds:.0f} s; the mesh is valid after each edit and "
+            f"in all {len(_rows(first))} frames, undone to the bit: "
             f"{_rows(none) == _rows(plain)}, replayed to the bit: {_rows(again) == _rows(first)}"
         )
+        _print_kinds(told)
+
+
+def _print_kinds(told: Sequence[str]) -> None:
+    """Print what is told of edits that cannot be made: their reasons, without numbers."""
+    reasons = (text.rpartition("left out: ")[2] for text in told)
+    kinds = Counter(re.sub(r"-?[0-9][0-9.e-]*", "#", text)[:MOST_TOLD] for text in reasons)
+    for kind, count in kinds.most_common():
+        print(f"  {count:5d}  {kind}", flush=True)
 
 
 def _solved(
     clip: Path, frames: FrameRange, log: EditLog | None, track: Path, threads: int = 0
-) -> tuple[int, float]:
-    """Solve a clip to a track; how many edits were refused, and the time [s]."""
+) -> tuple[tuple[str, ...], float]:
+    """Solve a clip to a track; what was told of edits, and the time [s]."""
     options = SolveOptions(clip, frames, triangulate=QUICK, edits=log)
     begun = perf_counter()
     result = solve(options, Output(track=track), Run(threads=threads), Progress())
-    return len(result.warnings), perf_counter() - begun
+    return result.warnings, perf_counter() - begun
 
 
 def _rows(track: Path) -> list[tuple[object, ...]]:
@@ -158,12 +177,13 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--edits", type=int, default=2000)
     parser.add_argument("--seeds", type=int, default=3)
+    parser.add_argument("--first", type=int, default=0, help="the first seed")
     parser.add_argument("--clip", type=Path, default=CLIP)
     parser.add_argument("--frames", default="0-23")
     given = parser.parse_args()
-    for seed in range(given.seeds):
+    for seed in range(given.first, given.first + given.seeds):
         check_still(seed, given.edits)
-    for seed in range(given.seeds):
+    for seed in range(given.first, given.first + given.seeds):
         check_clip(given.clip, FrameRange.parse(given.frames), seed, given.edits)
 
 

@@ -4,6 +4,7 @@
 
 Big Buck Bunny three times, all drawn without loss: not edited; with 60 vertices put on the face in
 frame 60, ten of them moved and three edges flipped; with vertices put there in frames 40 and 80.
+CLIP is one of 132 frames; the sample has the first 75 of them.
 
 Held vertices are compared with chains of patches of 21x21 px from frame to frame, each checked by
 its way back; a chain that does not come back ends there, for what it was on is covered or gone.
@@ -307,6 +308,8 @@ def main() -> None:
     with TemporaryDirectory() as name:
         folder = Path(name)
         plain = solved(options, None, "plain", folder)
+        if plain.report.frames[-1].frame < LAST:
+            raise SystemExit(f"{given.clip}: ends before frame {LAST}; give the whole clip as CLIP")
         edited = solved(options, edits_of(plain.track, given.seed), "edited", folder)
         where, _ = [follow(given.clip, edited, way) for way in WAYS]
         change = edited.warp_error / plain.warp_error - 1
