@@ -57,7 +57,7 @@ def opened_page(browser: Browser, server: Served) -> Iterator[Page]:
     page.on("console", lambda told: problems.append(told.text) if told.type == "error" else None)
     page.goto(server.address.url)
     expect(page.locator("#loading")).to_be_hidden()
-    page.wait_for_function("() => trimotion.painter.textures.drawn")
+    page.wait_for_function("() => trimotion.painter.textures.drawn && trimotion.painter.isReady")
     yield page
     page.close()
     assert problems == []

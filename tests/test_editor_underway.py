@@ -1,16 +1,20 @@
 """Edits on their way: what the editor's page shows before the program has answered."""
 
+import random
+import shutil
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from playwright.sync_api import Page, expect
 
 from pipeline.edit_log.journal import EditJournal
 from tests.browsing import assert_shows_the_mesh, find, log_of, place, wait_for_edits
-from tests.editing import Served
+from tests.editing import Served, opened
 
 
 def test_a_dropped_vertex_lies_there_at_once(page: Page, server: Served) -> None:
@@ -60,6 +64,47 @@ def test_a_dropped_vertex_lies_there_at_once(page: Page, server: Served) -> None
         answers.set()
         wait_for_edits(page, 3)
     assert_shows_the_mesh(page, server)
+
+
+def test_a_storm_of_hands_leaves_what_a_replay_makes(
+    page: Page, server: Served, tmp_path: Path
+) -> None:
+    """Clicks, moves, undo and redo faster than answers come, beside the optimiser at work."""
+    chance = random.Random(4)
+    for number in range(60):
+        if number % 15 == 5:
+            page.keyboard.press("l")
+        x, y = place(page, chance.uniform(4, 92), chance.uniform(4, 60))
+        page.mouse.move(x, y)
+        match chance.choice(("click", "click", "right", "move", "undo", "redo", "brush")):
+            case "click":
+                page.mouse.click(x, y)
+            case "right":
+                page.mouse.click(x, y, button="right")
+            case "move":
+                press_and_type(page, f"{chance.uniform(-6, 6):.2f}, {chance.uniform(-6, 6):.2f}")
+            case "brush":
+                page.keyboard.press("b")
+                page.mouse.click(x, y)
+                page.keyboard.press("a")
+            case turn:
+                for _ in range(chance.randint(1, 4)):
+                    page.keyboard.press("Control+z" if turn == "undo" else "Control+Shift+z")
+    page.evaluate("() => void trimotion.underway.done.then(() => trimotion.isCalm = true)")
+    page.wait_for_function("() => trimotion.isCalm")
+    page.locator("#views button[data-view=edited]").click()
+    assert_shows_the_mesh(page, server)
+    track = server.studio.session.path
+    with EditJournal(track) as journal:
+        wait_for_edits(page, len(journal.log.edits))
+        assert len(journal.history) > 10
+        assert journal.log.edits
+    again = opened(Path(shutil.copy(track, tmp_path / "again.mtrk")))
+    replayed, shown = again.worked(0), server.studio.session.worked(0)
+    again.close()
+    for name in ("vertices", "triangles", "vertex_ids", "triangle_ids"):
+        assert np.array_equal(getattr(replayed.mesh, name), getattr(shown.mesh, name))
+    assert np.array_equal(replayed.locks.vertices, shown.locks.vertices)
 
 
 @contextmanager

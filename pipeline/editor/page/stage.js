@@ -269,12 +269,24 @@ export class Stage {
     this.isDirty = true;
     requestAnimationFrame(() => {
       this.isDirty = false;
+      if (!this.isPaintable()) return;
       const { mesh, painted } = this.opacities;
       const over = this.isVeiled ? { mesh: 0, painted: 0 } : { mesh, painted };
       this.painter.paint(this.camera, this.size, { ...this.opacities, ...over });
       this.overlay.paint(this.camera, this.mesh, this.shown());
       this.painted();
     });
+  }
+
+  /** Whether there is what is painted with; else it is looked again soon. */
+  isPaintable() {
+    try {
+      if (!this.painter.isReady) this.repaint();
+      return this.painter.isReady;
+    } catch (error) {
+      this.told.problem(/** @type {Error} */ (error).message);
+      return false;
+    }
   }
 
   /** What is at the pointer. */

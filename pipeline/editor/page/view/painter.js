@@ -1,9 +1,9 @@
+import { Program } from "./program.js";
 import { DOTS, ERRORS, LINES, PICTURE } from "./shaders.js";
 
 /**
  * @typedef {import("../mesh/mesh.js").Mesh} Mesh
  * @typedef {{picture: number, drawn: number, errors: number, painted: number, mesh: number}} Opacities
- * @typedef {{program: WebGLProgram, at: (name: string) => WebGLUniformLocation | null}} Program
  */
 
 /** Root of the energy of a pixel that is shown brightest [code values]. */
@@ -19,10 +19,11 @@ export class Painter {
     if (!gl) throw new Error("this browser has no WebGL 2; try a newer one, or another machine");
     this.canvas = canvas;
     this.gl = gl;
-    this.pictures = program(gl, PICTURE);
-    this.lines = program(gl, LINES);
-    this.dots = program(gl, DOTS);
-    this.errors = program(gl, ERRORS);
+    this.pictures = new Program(gl, PICTURE);
+    this.lines = new Program(gl, LINES, ["ends", "held"]);
+    this.dots = new Program(gl, DOTS, ["at", "held"]);
+    this.errors = new Program(gl, ERRORS, ["at", "error"]);
+    this.isChecked = false;
     /** @type {Record<string, WebGLTexture>} */
     this.textures = {};
     this.isOpaque = false;
@@ -38,6 +39,16 @@ export class Painter {
     this.buffers = { ends: gl.createBuffer(), held: gl.createBuffer(), at: gl.createBuffer(), heldAt: gl.createBuffer(), cornerAt: gl.createBuffer(), error: gl.createBuffer() };
     gl.enable(gl.BLEND);
     gl.blendFuncSeparate(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA, gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
+  }
+
+  /** Whether all is there that it draws with; else a browser without a card would wait, up to a second. */
+  get isReady() {
+    const programs = [this.pictures, this.lines, this.dots, this.errors];
+    if (!this.isChecked && programs.every((one) => one.isReady)) {
+      this.isChecked = true;
+      for (const one of programs) one.check();
+    }
+    return this.isChecked;
   }
 
   /**
@@ -122,7 +133,7 @@ export class Painter {
     const { gl } = this;
     gl.bindVertexArray(array);
     for (const [name, [size, data]] of Object.entries(values)) {
-      const place = gl.getAttribLocation(used.program, name);
+      const place = used.places[name];
       gl.bindBuffer(gl.ARRAY_BUFFER, buffers[name]);
       gl.bufferData(gl.ARRAY_BUFFER, data, gl.DYNAMIC_DRAW);
       gl.enableVertexAttribArray(place);
@@ -229,22 +240,4 @@ function boxed(values, size) {
     for (let k = 0; k < BOX; k++) for (let j = 0; j < size; j++) made[BOX * i + k * size + j] = values[i + j];
   }
   return made;
-}
-
-/**
- * @param {WebGL2RenderingContext} gl
- * @param {{vertex: string, fragment: string}} source
- * @returns {Program}
- */
-function program(gl, source) {
-  const made = gl.createProgram();
-  for (const [kind, text] of /** @type {const} */ ([[gl.VERTEX_SHADER, source.vertex], [gl.FRAGMENT_SHADER, source.fragment]])) {
-    const shader = /** @type {WebGLShader} */ (gl.createShader(kind));
-    gl.shaderSource(shader, text);
-    gl.compileShader(shader);
-    if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) throw new Error(gl.getShaderInfoLog(shader) ?? "");
-    gl.attachShader(made, shader);
-  }
-  gl.linkProgram(made);
-  return { program: made, at: (name) => gl.getUniformLocation(made, name) };
 }
