@@ -8,9 +8,9 @@ CLIP is one of 132 frames; the sample has the first 75 of them.
 
 Held vertices are compared with chains of patches of 21x21 px from frame to frame, each checked by
 its way back; a chain that does not come back ends there, for what it was on is covered or gone.
-Chains are found in two ways: by pyramids of Lucas and Kanade, by which the program itself holds
-vertices, so that they tell only of what is let go and of what goes lost on the way; and by the
-best normalised cross-correlation around, of which the program knows nothing. Printed are the
+Chains are found in two ways: by pyramids of Lucas and Kanade, with which the program begins, and by
+the best normalised cross-correlation around, of which it knows nothing. Patches of both do not turn
+or stretch, and drift where the picture does: see `benchmarks.known_motion`. Printed are the
 shares of what patches see that lives as a held vertex, and that lives and is near; E_warp of the
 clips; rmse around the face, whose places are those of the patches; the largest E_warp where two
 edited frames meet, beside the median of the clip and beside the same frames without edits.
