@@ -21,6 +21,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Iterator
+from itertools import product
 from pathlib import Path
 
 import cv2
@@ -149,7 +150,10 @@ def measure(track: Path, frame: int, name: str, given: argparse.Namespace) -> It
 
 
 def seams(names: list[str]) -> None:
-    """Two triangles of one colour, at many angles and zooms: no pixel may differ from it."""
+    """Triangles of one colour, at many angles and zooms: no pixel may differ from it.
+
+    Each with a path of its own, and as `--svg-merge` has them.
+    """
     from fractions import Fraction
 
     from stages.exchange.exchange_options import ExchangeOptions
@@ -175,20 +179,19 @@ def seams(names: list[str]) -> None:
                 0, 0, Fraction(1, 25), mesh, CONSTANT, colors, zero, zero.astype(np.int64)
             )
             framing = Framing((64, 64), (64, 64), None)
-            options = ExchangeOptions()
-            film = Film(
-                "seam", ".svg", (64, 64), framing, None, (Flat(),), 0, None, 1, None, options
-            )
-            one = Svg(film)
-            one.add(Figure(snapshot, 0, Fraction(0), paint_of(snapshot)))
-            one.save(svg)
-            for title in names:
-                for scale in (1, 2, 3, 7):
+            for merge in (False, True):
+                known = 0, None, 1, None, ExchangeOptions(svg_merge=merge)
+                film = Film("seam", ".svg", (64, 64), framing, None, (Flat(),), *known)
+                one = Svg(film)
+                one.add(Figure(snapshot, 0, Fraction(0), paint_of(snapshot)))
+                one.save(svg)
+                for title, scale in product(names, (1, 2, 3, 7)):
                     found = RENDERERS[title](svg, scale)
                     off = np.abs(found.astype(int) - [200, 200, 200, 255]).max(axis=2)
                     if off.any():
                         told = f"{(off > 0).sum()} pixels, by {off.max()} at most"
-                        print(f"seam at {place} in {title} {scale}x: {told}")
+                        kind = "merged" if merge else "plain"
+                        print(f"seam at {place}, {kind}, in {title} {scale}x: {told}")
     print("seams between triangles of one colour: looked for at 4 angles, 4 zooms")
 
 
