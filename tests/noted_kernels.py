@@ -11,6 +11,7 @@ from tests.kernel_samples import random_mesh
 from warp_kernels.color_model import COLOR_MODELS
 from warp_kernels.device.device import Device
 from warp_kernels.device.phase import Phase
+from warp_kernels.device.staging import ArrayRows
 from warp_kernels.drawing.blend import BLENDS
 from warp_kernels.drawing.canvas import Canvas
 from warp_kernels.drawing.layers import Layers
@@ -63,6 +64,14 @@ class NotingDevice(Device):
     def read(self, array: Any, count: int) -> np.ndarray:
         """Read zeros."""
         return np.zeros((count, *array.shape[1:]), array.numpy().dtype)
+
+    def read_all(self, wanted: Sequence[ArrayRows]) -> list[np.ndarray]:
+        """Read zeros."""
+        whole = [self.read(rows.array, rows.count) for rows in wanted]
+        return [
+            array if rows.column is None else array[:, rows.column]
+            for array, rows in zip(whole, wanted, strict=True)
+        ]
 
 
 def note_solver(device: Device, kinds: Sequence[tuple[str, str, bool]]) -> None:

@@ -65,7 +65,7 @@ class Cache:
         self.events.append((done, total))
 
 
-CPU = Named(is_cpu=True)
+CPU = Named(is_cpu=True, is_cuda=False)
 
 
 def test_all_that_are_expected_are_compiled_with_the_first(
