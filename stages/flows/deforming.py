@@ -15,6 +15,9 @@ FURTHEST = 1.0
 """What leads further away is not believed [px]."""
 AROUND, SAMPLES = 20.0, 7
 """How far around a point motion tells how its patch turns [px], and at how many places a side."""
+WORTH = 0.3
+"""A patch is believed to turn or stretch where that leaves at most this part of what it leaves as a
+whole: a lesser gain is as likely noise, or what passes behind it."""
 MOST = 256
 """Patches that are worked on at once: each needs 21 kB for its gradients."""
 _SIDE = np.arange(-HALF, HALF + 1, dtype=np.float64)
@@ -91,21 +94,35 @@ def _settled(
     inverse = np.linalg.inv(curvature)
     begun = np.concatenate([steps, turns.reshape(-1, 4)], axis=1)
     known = begun.copy()
-    misfits: list[np.ndarray] = []
-    for number in range(ROUNDS + 1):
-        turned = np.eye(2) + known[:, 2:].reshape(-1, 2, 2)
-        laid = points[:, None] + known[:, None, :2] + np.einsum("kj,nij->nki", _OFFSETS, turned)
-        differences = _values(later, laid) - patches
-        differences -= differences.mean(axis=1, keepdims=True)
-        misfits.append(np.einsum("nk,nk->n", differences, differences))
-        if number == ROUNDS:
-            break
+    whole = _misfits(_differences(later, places + steps[:, None], patches))
+    for _ in range(ROUNDS):
+        differences = _differences(later, _laid(points, known), patches)
         pull = np.einsum("nki,nk->ni", ways, differences)
         pull[:, 2:] += FIRM * (known - begun)[:, 2:]
         known -= np.clip(np.einsum("nij,nj->ni", inverse, pull), -FURTHEST, FURTHEST)
     away = np.linalg.norm(known[:, :2] - begun[:, :2], axis=1)
-    fits = (misfits[-1] < misfits[0]) & (away <= FURTHEST)
+    left = _misfits(_differences(later, _laid(points, known), patches))
+    fits = (left < WORTH * whole) & (away <= FURTHEST)
     return np.where(fits[:, None], known[:, :2], steps)
+
+
+def _laid(points: np.ndarray, known: np.ndarray) -> np.ndarray:
+    """Where the pixels of patches come to lie [px], [N, K, 2]."""
+    turned = np.eye(2) + known[:, 2:].reshape(-1, 2, 2)
+    moved: np.ndarray = np.einsum("kj,nij->nki", _OFFSETS, turned)
+    return points[:, None] + known[:, None, :2] + moved
+
+
+def _differences(later: np.ndarray, laid: np.ndarray, patches: np.ndarray) -> np.ndarray:
+    """What a picture shows there beside patches, whatever the light [code values], [N, K]."""
+    found = _values(later, laid) - patches
+    return found - found.mean(axis=1, keepdims=True)
+
+
+def _misfits(differences: np.ndarray) -> np.ndarray:
+    """Sums of squares, [N]."""
+    summed: np.ndarray = np.einsum("nk,nk->n", differences, differences)
+    return summed
 
 
 def _values(picture: np.ndarray, places: np.ndarray) -> np.ndarray:

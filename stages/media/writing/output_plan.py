@@ -192,11 +192,10 @@ def _plan_stills(
             f"output {target}: one still cannot hold {count or 'many'} frames; "
             f"write {stem}_####{ending}, or choose one frame with --frames N"
         )
-    if options.codec is not None or options.pixel_format is not None:
-        raise OptionError(
-            f"codec {options.codec}, pixel format {options.pixel_format}: stills have none to "
-            "choose; leave these options out"
-        )
+    choices = (("codec", options.codec), ("pixel format", options.pixel_format))
+    given = [f"{name} {value}" for name, value in choices if value is not None]
+    if given:
+        raise OptionError(f"{' and '.join(given)}: stills have none to choose; leave it out")
     if options.encoder_preset is not None:
         raise OptionError(
             f"encoder preset {options.encoder_preset}: {target.suffix} has none; leave it out"
@@ -222,7 +221,7 @@ def _check_holds(container: Container, encoder: VideoCodec, ending: str) -> None
         trial.add_stream(encoder.name, rate=25)
     except ValueError as error:
         raise OptionError(
-            f"codec of {encoder.name}: {ending} cannot hold it; use .mkv or another codec"
+            f"codec {encoder.name}: {ending} cannot hold it; use .mkv or another codec"
         ) from error
     finally:
         trial.close()
