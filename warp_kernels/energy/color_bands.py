@@ -5,14 +5,13 @@ of its column there. What the darkest and the brightest of these allow, all of t
 pictures of such ranges are looked at instead of every pixel, and few triangles are left.
 """
 
-from typing import Any
-
 import numpy as np
 import warp as wp
 
-from warp_kernels.device.device import Phase
+from warp_kernels.color_model import CHANNELS
 from warp_kernels.device.exact import EXACT
 from warp_kernels.energy.nearby_colors import LEEWAY, NEAR, Bytes, bytes_around
+from warp_kernels.energy.triangle_look import Column, TriangleLook
 from warp_kernels.energy.triangle_walk import columns_of, step_down, walk_triangle
 from warp_kernels.energy.workspace import Workspace
 
@@ -146,11 +145,11 @@ def sift(
     # In:
     vertices: wp.array(dtype=wp.vec2d),
     triangles: wp.array(dtype=wp.vec3i),
-    coefficients: wp.array3d(dtype=wp.float64),
-    energies: wp.array(dtype=wp.float64),
     low: wp.array2d(dtype=wp.vec3ub),
     high: wp.array2d(dtype=wp.vec3ub),
     height: int,
+    coefficients: wp.array3d(dtype=wp.float64),
+    energies: wp.array(dtype=wp.float64),
     # Out:
     suspects_out: wp.array(dtype=int),
 ):
@@ -193,14 +192,18 @@ class Bands:
     """
 
     def __init__(self, workspace: Workspace) -> None:
-        self._workspace = workspace
         device, (width, height) = workspace.device, workspace.size
         shape = (-(-height // BAND), width)
-        self._ranges = [device.empty(shape, wp.vec3ub) for _ in range(2)]
-        self._widening = device.record(widen_bands, [workspace.pixels], self._ranges)
+        ranges = [device.empty(shape, wp.vec3ub) for _ in range(2)]
+        self._widening = device.record(widen_bands, [workspace.pixels], ranges)
         self._widening.resize(shape[0])
-        self._generation = -1
-        self._recorded: dict[Any, Phase] = {}
+        self._look = TriangleLook(
+            workspace,
+            sift,
+            fixed=[*ranges, height],
+            given=[Column(wp.float64, (CHANNELS, 1)), Column(wp.float64)],
+            found=[Column(int)],
+        )
 
     def suspects(self, coefficients: np.ndarray, energies: np.ndarray) -> np.ndarray:
         """Triangles of the mesh as it stands that are to be looked at pixel by pixel, [T] bool.
@@ -209,21 +212,7 @@ class Bands:
             coefficients: As in a snapshot, of one term, [T, 3, 1].
             energies: No less than what these leave [code value^2 px], [T].
         """
-        workspace, device = self._workspace, self._workspace.device
-        if self._generation != workspace.generation:
-            count, empty = workspace.capacity[1], device.empty
-            self._given = (empty((count, 3, 1), wp.float64), empty(count, wp.float64))
-            self._found = empty(count, int)
-            self._generation = workspace.generation
-            self._recorded.clear()
-        for array, values in zip(self._given, (coefficients, energies), strict=True):
-            device.write(array, values)
-        place = workspace.standing.ptr
-        if place not in self._recorded:
-            inputs = [workspace.standing, workspace.triangles, *self._given]
-            inputs += [*self._ranges, workspace.size[1]]
-            self._recorded[place] = device.record(sift, inputs, [self._found])
-        self._recorded[place].resize(len(energies))
-        device.run([self._widening, self._recorded[place]])
-        found: np.ndarray = device.read(self._found, len(energies)) > 0
-        return found
+        given = [coefficients, energies]
+        (found,) = self._look.look(len(energies), given, first=[self._widening])
+        suspected: np.ndarray = found > 0
+        return suspected

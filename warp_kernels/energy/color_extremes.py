@@ -1,13 +1,11 @@
 """The darkest and the brightest of the pixels below every triangle, channel by channel."""
 
-from typing import Any
-
 import numpy as np
 import warp as wp
 
 from warp_kernels.color_model import CHANNELS
 from warp_kernels.device.exact import EXACT
-from warp_kernels.device.phase import Phase
+from warp_kernels.energy.triangle_look import Column, TriangleLook
 from warp_kernels.energy.triangle_walk import columns_of, step_down, walk_triangle
 from warp_kernels.energy.workspace import Workspace
 
@@ -58,8 +56,12 @@ class Extremes:
     """
 
     def __init__(self, workspace: Workspace) -> None:
-        self._workspace = workspace
-        self._recorded: tuple[Any, Phase, wp.array] | None = None
+        self._look = TriangleLook(
+            workspace,
+            find_extremes,
+            fixed=[workspace.pixels],
+            found=[Column(wp.uint8, (2, CHANNELS))],
+        )
 
     def measure(self, triangle_count: int) -> np.ndarray:
         """Look at the mesh as it stands.
@@ -71,14 +73,5 @@ class Extremes:
             `DARKEST` and `BRIGHTEST` of each channel of the workspace's picture [code values],
             [T, 2, 3] uint8.
         """
-        workspace = self._workspace
-        place = (workspace.generation, workspace.standing.ptr)
-        if self._recorded is None or self._recorded[0] != place:
-            found = workspace.device.empty((workspace.capacity[1], 2, CHANNELS), wp.uint8)
-            inputs = [workspace.standing, workspace.triangles, workspace.pixels]
-            phase = workspace.device.record(find_extremes, inputs, [found])
-            self._recorded = (place, phase, found)
-        _, phase, found = self._recorded
-        phase.resize(triangle_count)
-        workspace.device.run([phase])
-        return workspace.device.read(found, triangle_count)
+        (found,) = self._look.look(triangle_count)
+        return found

@@ -12,8 +12,7 @@ import warp as wp
 
 from warp_kernels.color_model import CHANNELS, ColorModel
 from warp_kernels.device.exact import EXACT
-from warp_kernels.device.phase import Phase
-from warp_kernels.device.staging import ArrayRows
+from warp_kernels.energy.triangle_look import Column, TriangleLook
 from warp_kernels.energy.triangle_walk import columns_of, step_down, walk_triangle
 from warp_kernels.energy.workspace import Workspace
 
@@ -285,9 +284,23 @@ class Nearby:
     """
 
     def __init__(self, workspace: Workspace) -> None:
-        self._workspace = workspace
-        self._generation = -1
-        self._recorded: dict[Any, Phase] = {}
+        model = workspace.model
+        self._look = TriangleLook(
+            workspace,
+            nearby_kernel(model),
+            fixed=[workspace.pixels],
+            given=[
+                Column(wp.float64, (CHANNELS, model.term_count)),
+                Column(wp.float64),
+                Column(wp.uint8, (2, CHANNELS)),
+            ],
+            found=[
+                Column(int),
+                Column(wp.vec3d),
+                Column(wp.vec2i, (CHANNELS,)),
+                Column(wp.float64),
+            ],
+        )
 
     def measure(
         self, coefficients: np.ndarray, energies: np.ndarray, limits: np.ndarray
@@ -300,40 +313,4 @@ class Nearby:
                 shall not be looked at, infinite for those whose energies shall be told, [T].
             limits: Least and greatest values that are shown [code values], [T, 2, 3] uint8.
         """
-        self._allocate()
-        workspace, device = self._workspace, self._workspace.device
-        for array, values in zip(self._given, (coefficients, energies, limits), strict=True):
-            device.write(array, values)
-        place = workspace.standing.ptr
-        if place not in self._recorded:
-            inputs = [workspace.standing, workspace.triangles, workspace.pixels, *self._given]
-            self._recorded[place] = device.record(
-                nearby_kernel(workspace.model), inputs, self._found
-            )
-        phase = self._recorded[place]
-        phase.resize(len(energies))
-        device.run([phase])
-        return Departures(
-            *device.read_all([ArrayRows(array, len(energies)) for array in self._found])
-        )
-
-    def _allocate(self) -> None:
-        """Take memory for as many triangles as the workspace has room for."""
-        workspace = self._workspace
-        if self._generation == workspace.generation:
-            return
-        T, empty = workspace.capacity[1], workspace.device.empty
-        terms = workspace.model.term_count
-        self._given = (
-            empty((T, CHANNELS, terms), wp.float64),
-            empty(T, wp.float64),
-            empty((T, 2, CHANNELS), wp.uint8),
-        )
-        self._found = (
-            empty(T, int),
-            empty(T, wp.vec3d),
-            empty((T, CHANNELS), wp.vec2i),
-            empty(T, wp.float64),
-        )
-        self._generation = workspace.generation
-        self._recorded.clear()
+        return Departures(*self._look.look(len(energies), [coefficients, energies, limits]))

@@ -10,21 +10,19 @@ Deviation: colours close to the candidate vote for it, since pictures have noise
 """
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import warp as wp
 
 from warp_kernels.color_model import CHANNELS
 from warp_kernels.device.exact import EXACT
-from warp_kernels.device.phase import Phase
-from warp_kernels.device.staging import ArrayRows
 from warp_kernels.energy.nearby_colors import (
     channel_by_channel,
     first_outside,
     read,
     read_whole,
 )
+from warp_kernels.energy.triangle_look import Column, TriangleLook
 from warp_kernels.energy.triangle_walk import columns_of, step_down, walk_triangle
 from warp_kernels.energy.workspace import Workspace
 
@@ -152,9 +150,13 @@ class PlainColors:
     """
 
     def __init__(self, workspace: Workspace) -> None:
-        self._workspace = workspace
-        self._generation = -1
-        self._recorded: dict[Any, Phase] = {}
+        self._look = TriangleLook(
+            workspace,
+            find_plain_colors,
+            fixed=[workspace.pixels],
+            given=[Column(int)],
+            found=[Column(int), Column(wp.vec3d), Column(wp.float64)],
+        )
 
     def measure(self, counts: np.ndarray, means: np.ndarray, energies: np.ndarray) -> Plain:
         """Look at the mesh as it stands.
@@ -164,24 +166,7 @@ class PlainColors:
             means: Mean colours of all of them [code values], [T, 3].
             energies: What these leave [code value^2 px], [T].
         """
-        workspace, device = self._workspace, self._workspace.device
-        if self._generation != workspace.generation:
-            size, empty = workspace.capacity[1], device.empty
-            self._given = empty(size, int)
-            self._found = (empty(size, int), empty(size, wp.vec3d), empty(size, wp.float64))
-            self._generation = workspace.generation
-            self._recorded.clear()
-        device.write(self._given, counts.astype(np.int32))
-        place = workspace.standing.ptr
-        if place not in self._recorded:
-            inputs = [workspace.standing, workspace.triangles, workspace.pixels, self._given]
-            self._recorded[place] = device.record(find_plain_colors, inputs, self._found)
-        phase = self._recorded[place]
-        phase.resize(len(counts))
-        device.run([phase])
-        others, sums, squares = device.read_all(
-            [ArrayRows(array, len(counts)) for array in self._found]
-        )
+        others, sums, squares = self._look.look(len(counts), [counts])
         alike = counts - others
         count = np.maximum(alike, 1)
         colors = (counts[:, None] * means - sums) / count[:, None]
