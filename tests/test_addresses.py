@@ -1,5 +1,6 @@
 """`--allow-url`: sources on the web, fetched only if the user says so."""
 
+import argparse
 import json
 import threading
 from collections.abc import Iterator
@@ -12,8 +13,12 @@ import pytest
 import trimotion
 from pipeline.cli import main
 from pipeline.commands.addresses import fetched, is_address
+from pipeline.commands.called import as_called
+from pipeline.progress import Progress
+from pipeline.track import TrackReader
+from tests.jobs import job_of
 from tests.media_samples import write_sound
-from tests.tracks import CUT, QUICK_FLAGS, write_clip
+from tests.tracks import CUT, QUICK_FLAGS, solve_to, write_clip
 from warp_kernels.errors import MediaError, OptionError
 
 ODD = {
@@ -115,6 +120,71 @@ def test_a_film_on_the_web_is_told_of_and_compared(
     assert told[-1].split(": ", 1)[1] == told[-2].split(": ", 1)[1]
 
 
+def test_a_track_keeps_the_address(site: tuple[str, Path], tmp_path: Path, capsys) -> None:
+    """In a temporary file's place: whoever reads it later must know whence the film came."""
+    address, track = f"{site[0]}/clip.mkv", tmp_path / "job.mtrk"
+    flags = ("--allow-url", "--track", str(track))
+    assert animate(address, tmp_path / "out.mkv", *flags) == 0
+    assert main(["info", str(track), "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    places = (told["source"]["path"], told["info"]["path"], told["options"]["source"])
+    assert places == (address,) * 3
+    with trimotion.open_track(track) as opened:
+        assert opened.source == address
+    for words in (
+        ("render", "-o", f"{tmp_path}/o.mkv", "--style", "source"),
+        ("edit", "--no-open"),
+    ):
+        assert main([words[0], str(track), *words[1:]]) == 3
+        error = capsys.readouterr().err
+        assert error.startswith(f"trimotion: error: {address}: ")
+        assert error.count("--source") == 1
+    look = ("--style", "source", "--source", str(site[1] / "clip.mkv"), "-q")
+    assert main(["render", str(track), "-o", f"{tmp_path}/o.mkv", *look]) == 0
+
+
+class Stopping(Progress):
+    """Breaks off where the user does."""
+
+    def frame(self, done: int, total: int | None, triangles: int, rmse: float) -> None:
+        """Be interrupted."""
+        if done == 2:
+            raise KeyboardInterrupt
+
+
+def test_what_broke_off_keeps_the_address_and_another_track_its_own(
+    site: tuple[str, Path], tmp_path: Path
+) -> None:
+    """An interrupted run is gone on with; a refused one leaves what stands in its way alone."""
+    address, track = f"{site[0]}/clip.mkv", tmp_path / "job.mtrk"
+    file, arguments = site[1] / "clip.mkv", argparse.Namespace(address=address)
+    with pytest.raises(KeyboardInterrupt), as_called(arguments, job_of(file, track=track)):
+        solve_to(track, file, "0-2", Stopping())
+    with TrackReader(track) as reader:
+        assert reader.header.source.path == address
+    track.unlink()
+    flags = ("-o", str(track), *QUICK_FLAGS, "--frames", "0-2", "-q")
+    assert main(["solve", str(file), *flags]) == 0
+    before = track.read_bytes()
+    assert main(["solve", address, "--allow-url", *flags]) == 4
+    assert track.read_bytes() == before
+    assert main(["solve", address, "--allow-url", "--resume", *flags]) == 0
+    with TrackReader(track) as reader:
+        assert reader.header.source.path == address
+
+
+def test_what_is_waited_for_is_told(site: tuple[str, Path], capsys) -> None:
+    """Before it comes, in a note, by commands with and without progress."""
+    address = f"{site[0]}/clip.mkv"
+    for words in (
+        ("info", address),
+        ("plan", address),
+        ("measure", address, str(site[1] / "clip.mkv")),
+    ):
+        assert main([*words, "--allow-url"]) == 0
+        assert capsys.readouterr().err.startswith(f"trimotion: note: fetching {address}\n")
+
+
 OTHERS = {"info": [], "measure": ["other.mkv"]}
 """What a command wants beside its source; others write a file."""
 
@@ -134,6 +204,7 @@ def test_nothing_is_fetched_unasked(command: str, tmp_path: Path, capsys) -> Non
 
 NOT_FETCHED = [
     ("edit", "URL", "--no-open"),
+    ("edit", "URL", "--no-open", "--allow-url"),
     ("render", "URL", "-o", "a.mp4"),
     ("render", "a.mtrk", "--source", "URL", "-o", "a.mp4"),
     ("join", "a.mtrk", "URL", "-o", "b.mtrk"),
@@ -150,8 +221,9 @@ def test_where_no_address_can_be_a_line_says_so(words: tuple[str, ...], capsys) 
     address = "https://example.invalid/clip.mp4"
     assert main([address if word == "URL" else word for word in words]) in (2, 3, 4)
     error = capsys.readouterr().err
-    assert error.startswith(f"trimotion: error: {address}: ")
-    assert "address" in error
+    named = "--allow-url" if words[0] == "edit" and "--allow-url" in words else address
+    assert error.startswith(f"trimotion: error: {named}: ")
+    assert ("address" in error) == (named == address)
     assert "file" in error.split("; ")[1]
     assert error.count("\n") == 1
 

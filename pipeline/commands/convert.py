@@ -49,10 +49,12 @@ def _animate(arguments: argparse.Namespace) -> "Animated":
     _check_report(job.run, job.output, job.solve.source)
     with progress_for(arguments) as progress:
         with importing():
+            from pipeline.commands.called import as_called
             from pipeline.farm.runners import runner_for
             from pipeline.loop.animate import animate
 
-        result = animate(job, progress, runner_for(job.run))
+        with as_called(arguments, job):
+            result = animate(job, progress, runner_for(job.run))
         _tell(progress, result, job.output.path)
         _report(arguments, job, result)
         return result
@@ -65,11 +67,13 @@ def _solve(arguments: argparse.Namespace) -> "Animated":
     _check_report(job.run, job.output, job.solve.source)
     with progress_for(arguments) as progress:
         with importing():
+            from pipeline.commands.called import as_called
             from pipeline.farm.runners import runner_for
             from pipeline.loop.animate import solve
 
         runner = runner_for(job.run)
-        result = solve(job.solve, job.output, job.run, progress, runner=runner)
+        with as_called(arguments, job):
+            result = solve(job.solve, job.output, job.run, progress, runner=runner)
         _tell(progress, result, job.output.track)
         _report(arguments, job, result)
         return result

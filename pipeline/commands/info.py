@@ -6,7 +6,7 @@ from pathlib import Path
 
 from pipeline.options.edit_log import EditLog
 from pipeline.printable import printable
-from pipeline.track import TrackReader, is_track
+from pipeline.track import SourceIdentity, TrackReader, is_track
 from pipeline.track.plain_values import to_plain
 from pipeline.track.schema import FORMAT
 from stages.focus import spelled
@@ -84,11 +84,16 @@ def _facts(track: TrackReader) -> dict[str, object]:
         "shots": list(track.shots),
         "model": header.model.name,
         "source": to_plain(header.source),
-        "info": header.info.as_dict(),
+        "info": {**header.info.as_dict(), **_called(header.source)},
         "options": {**header.options, "focus": spelled(header.solve.foci).split()},
         "focus": spelled(header.solve.foci),
         "frames": [dataclasses.asdict(row) for row in track.rows],
     }
+
+
+def _called(source: SourceIdentity) -> dict[str, str]:
+    """Whence a source came that was no file: as a path an address loses a slash."""
+    return {} if source.is_file else {"path": source.path}
 
 
 def _track_rows(track: TrackReader) -> list[tuple[str, str]]:

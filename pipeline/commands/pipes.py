@@ -57,6 +57,7 @@ def piped(arguments: argparse.Namespace) -> Iterator[None]:
         if address is not None:
             place = Path(folder) / "fetched"
             place.mkdir()
+            _tell_of(arguments, address)
             source = fetched(address, place)
             names[source] = arguments.address = address
             setattr(arguments, _source_key(arguments), str(source))
@@ -100,6 +101,19 @@ def _address_in(arguments: argparse.Namespace) -> str | None:
     if len(inputs) > 1:
         raise OptionError(f"{named[0]}: an address is an input of its own; name it alone")
     return named[0]
+
+
+def _tell_of(arguments: argparse.Namespace, address: str) -> None:
+    """Say what is waited for: a film may take minutes, before any command says anything."""
+    from pipeline.commands.convert import progress_for
+    from pipeline.progress import tell
+
+    note = f"fetching {address}"
+    if "progress" in arguments:
+        with progress_for(arguments) as progress:
+            progress.note(note)
+    elif not getattr(arguments, "quiet", False):
+        tell(f"trimotion: note: {note}", sys.stderr)
 
 
 def _read_by(arguments: argparse.Namespace) -> list[str | None]:

@@ -11,6 +11,9 @@ from pipeline.options.nearest import nearest
 SEVERAL = ("animate", "solve", "render")
 """Commands that take several inputs."""
 
+ALLOW_URL = "--allow-url"
+"""An option of commands that read a source once: what is read again must stay where it is."""
+
 
 def no_command(word: str, known: Iterable[str]) -> str:
     """What to say about a first word that is no command."""
@@ -25,6 +28,8 @@ def unknown_arguments(arguments: Sequence[str], known: Sequence[str], command: s
     if not first.startswith("-"):
         apart = "; several inputs stand side by side" if command in SEVERAL else ""
         return f"{arguments[0]!r}: unknown argument{apart}"
+    if first == ALLOW_URL:
+        return f"{first}: {command} fetches nothing; download the file and give its name"
     named = [option for option in job_options() if option.flag == first.lstrip("-")]
     owners = [name for name, has in COMMAND_OPTIONS.items() if any(map(has, named))]
     # what preview and timeline have is that of animate, and what plan and edit have that of solve

@@ -45,9 +45,10 @@ class Track:
         return self._reader.shots
 
     @property
-    def source(self) -> Path:
-        """Where the source lay when it was solved."""
-        return Path(self._reader.header.source.path)
+    def source(self) -> Path | str:
+        """Where the source lay when it was solved; a text if that was no file but an address."""
+        found = self._reader.header.source
+        return Path(found.path) if found.is_file else found.path
 
     @property
     def size(self) -> tuple[int, int]:

@@ -68,7 +68,7 @@ def render_job(
         notes.append(f"frames {wanted}: the track ends with frame {last}")
     if found is None:
         if info.audio_codec is not None and output.encode.audio:
-            notes.append(f"{problem}: the sound is left out; --source says where it is now")
+            notes.append(f"{problem}: the sound is left out; to have it {header.source.remedy}")
         info = replace(info, audio_codec=None, audio_channels=None, audio_rate=None)
     else:
         options, info = replace(options, source=found), replace(info, path=found)
@@ -128,20 +128,20 @@ def _find(named: Path | None, track: TrackReader, needed: str) -> tuple[Path | N
     if named is not None:
         header.source.check(named)
         return named, ""
-    path = Path(header.source.path)
+    place, remedy = header.source.path, header.source.remedy
+    path = Path(place)
     try:
+        if not header.source.is_file:
+            raise MediaError(place, "the source was no file", remedy)
         if not _is_there(path):
-            raise MediaError(path, "the source is not there", "say with --source where it is")
+            raise MediaError(place, "the source is not there", remedy)
         header.source.check(path)
     except (MediaError, OptionError, TrackError) as error:
+        reason = str(error).split(";")[0]  # its remedy is the same
         if needed:
-            reason = str(error).removeprefix(f"{path}: ")
-            raise MediaError(
-                path,
-                f"{needed} needs the source ({reason})",
-                "say with --source where it is",
-            ) from error
-        return None, str(error).split(";")[0]
+            reason = reason.removeprefix(f"{place}: ")
+            raise MediaError(place, f"{needed} needs the source ({reason})", remedy) from error
+        return None, reason
     return path, ""
 
 

@@ -1,6 +1,7 @@
 """Whether a source is still the one that a track was made from."""
 
 import hashlib
+import os
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -9,6 +10,8 @@ from warp_kernels.errors import MediaError, TrackError
 
 SAMPLE = 1 << 20
 """Bytes at a file's beginning and end that tell it from others; a film is not read as a whole."""
+PIPE = "-"
+"""Where a source was that came through standard input."""
 
 
 @dataclass(frozen=True)
@@ -16,11 +19,24 @@ class SourceIdentity:
     """What tells a source from others, wherever it lies."""
 
     path: str
-    """Where it was, absolute; this may change."""
+    """Where it was, absolute, or whence it came, see `is_file`; this may change."""
     size: int
     """Size of all its files [bytes]."""
     digest: str
     """SHA-256 of the sizes, the first and the last mebibyte of its files."""
+
+    @property
+    def is_file(self) -> bool:
+        """Whether it lay in files; else it came from an address or through the pipe `-`."""
+        return os.path.isabs(self.path) or not (self.path == PIPE or "://" in self.path)
+
+    @property
+    def remedy(self) -> str:
+        """What to do where it is needed and not there."""
+        if self.is_file:
+            return "say with --source where it is"
+        what = "what was piped in" if self.path == PIPE else "it"
+        return f"save {what} to a file and say with --source where that is"
 
     def check(self, path: Path) -> None:
         """Refuse another source.

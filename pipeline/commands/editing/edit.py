@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from pipeline.commands.convert import convert, progress_for
 from pipeline.commands.importing import importing
 from pipeline.progress import tell
-from warp_kernels.errors import OptionError
+from warp_kernels.errors import MediaError, OptionError
 
 if TYPE_CHECKING:
     from pipeline.editor.serving.studio import Studio
@@ -108,8 +108,11 @@ def _with_source(reader: Any, arguments: argparse.Namespace, track: Path) -> "So
         MediaError: If it is not there.
     """
     opened = Path(arguments.source)
-    named = arguments.moved or (reader.header.source.path if opened == track else opened)
-    reader.header.source.check(Path(named))
+    source = reader.header.source
+    if opened == track and not (arguments.moved or source.is_file):
+        raise MediaError(source.path, "the source of the track was no file", source.remedy)
+    named = arguments.moved or (source.path if opened == track else opened)
+    source.check(Path(named))
     options: SolveOptions = replace(reader.header.whole_solve, source=Path(named))
     return options
 
