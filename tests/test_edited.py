@@ -161,8 +161,10 @@ def test_edits_that_cannot_be_made_change_nothing(clip: Path, tmp_path: Path) ->
     assert rows_of(tmp_path / "edited.mtrk") == rows_of(tmp_path / "plain.mtrk")
     assert len(told.warnings) == 1
     assert f"edits of frame {COUNT - 1} change nothing: frames 0-3 are solved" in told.notes
+    told = solve_to(tmp_path / "none.mtrk", clip, "0-3", edits=EditLog())
+    assert "--edits: holds no edit, so nothing changes" in told.notes
     beyond = EditLog((FlipEdge(COUNT, (4.0, 9.0)),))
-    with pytest.raises(OptionError, match=f"an edit of frame {COUNT}, and .* ends with frame 11"):
+    with pytest.raises(OptionError, match=f"frame {COUNT} is edited, but .* ends with frame 11"):
         solve_to(tmp_path / "beyond.mtrk", clip, edits=beyond)
 
 

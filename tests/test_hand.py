@@ -234,8 +234,10 @@ def test_logs_are_files(tmp_path: Path) -> None:
     assert json.loads(first) == {"edit": "flip_edge", "frame": 4, "at": [1.5, 2.0]}
     assert log.frames == (2, 4)
     assert [log.next_frame(index) for index in (0, 3, 5)] == [2, 4, None]
-    with pytest.raises(MediaError, match="cannot be read"):
-        read_log(tmp_path / "other.jsonl")
+    (tmp_path / "picture.png").write_bytes(b"\x89PNG\r\n\x1a\n")
+    for name, told in (("other.jsonl", "check the name"), ("picture.png", "give a file of edits")):
+        with pytest.raises(MediaError, match=rf"cannot be read \([^']*\); {told}"):
+            read_log(tmp_path / name)
 
 
 def test_budgets_count_what_is_free() -> None:

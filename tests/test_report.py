@@ -113,6 +113,21 @@ def _check_page(text: str) -> None:
     assert all(value.startswith("data:") for value in linked)
 
 
+def test_one_frame_has_figures_and_a_picture_of_its_own_size(clip: Path, tmp_path: Path) -> None:
+    """A plot of one frame would be empty, and a small picture blown up."""
+    flags = ("--frames", "3", "--report", f"{tmp_path}/r.html")
+    assert run("animate", clip, tmp_path / "out.png", *flags) == 0
+    root = ElementTree.fromstring((tmp_path / "r.html").read_text("utf-8"))
+    (image,) = root.iter(f"{HTML}img")
+    (figure,) = root.iter(f"{HTML}figure")
+    assert image.attrib["width"] == "96"
+    assert figure.attrib["style"] == "max-width: 96px"
+    assert not list(root.iter(f"{SVG}svg"))
+    rows = {row.findtext(f"{HTML}th"): row.findtext(f"{HTML}td") for row in root.iter(f"{HTML}tr")}
+    assert rows["frame"] == "3"
+    assert {"triangles", "rmse"} <= rows.keys()
+
+
 def test_names_of_strangers_are_no_markup(clip: Path, tmp_path: Path) -> None:
     """What a file is called stands in the page as text, and shapes have no pictures."""
     odd = tmp_path / "<b>&'\x1b[31m.mp4"
@@ -139,6 +154,7 @@ def test_ranges_are_told_together(clip: Path, tmp_path: Path) -> None:
 
 REFUSED: list[tuple[str, Sequence[str], int, str]] = [
     ("r.txt", (), 2, "ends with neither .json nor .html"),
+    (".html", (), 2, "is an ending without a name; write "),
     ("-", (), 2, "ends with neither .json nor .html"),
     ("there.json", (), 4, "exists already; choose another name or --overwrite"),
     ("none/r.json", (), 4, "there is no folder"),

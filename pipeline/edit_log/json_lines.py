@@ -15,10 +15,12 @@ from pipeline.options.members import parameters
 from pipeline.options.nearest import nearest
 from pipeline.track.plain_values import CLASS, UnknownNameError, from_plain, to_plain
 from stages.hand import EDITS, Edit
-from stages.media.text_file import read_text
+from stages.media.text_file import read_text, reason_of
 from stages.media.writing.commit import write_file
 from warp_kernels.errors import MediaError, OptionError
 
+HOLDERS = "give a file of edits, one a line as JSON, or a track that holds them"
+"""What to say to whoever named another file."""
 KIND = "edit"
 """The key of an edit's kind."""
 MOST_EDITS = 100_000
@@ -71,8 +73,9 @@ def read_lines(path: Path) -> EditLog:
     try:
         text = read_text(path)
     except (OSError, ValueError) as error:
-        reason = str(getattr(error, "strerror", None) or error).lower()
-        raise MediaError(path, f"the log of edits cannot be read ({reason})", FORM) from error
+        remedy = "check the name" if isinstance(error, OSError) else HOLDERS
+        problem = f"the log of edits cannot be read ({reason_of(error)})"
+        raise MediaError(path, problem, remedy) from error
     return from_json_lines(text, path)
 
 

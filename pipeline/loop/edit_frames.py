@@ -31,14 +31,14 @@ def check_edits(options: SolveOptions, info: MediaInfo) -> None:
     count = count_frames(options.source, options.read)
     if last >= count:
         raise OptionError(
-            f"--edits: an edit of frame {last}, and {options.source} ends with frame {count - 1}; "
-            "give the log of this clip, or leave edits beyond its end out"
+            f"--edits: frame {last} is edited, but {options.source} ends with frame {count - 1}; "
+            "give the log of this clip, or leave out edits beyond its end"
         )
 
 
 def with_unreached(options: SolveOptions, result: Animated) -> Animated:
-    """What a run came to, with a note on edits of frames that were not solved, and warnings of
-    styles that cannot be drawn.
+    """What a run came to, with a note on edits of frames that were not solved, or that there are
+    none, and warnings of styles that cannot be drawn.
 
     Args:
         options: What was solved.
@@ -46,6 +46,8 @@ def with_unreached(options: SolveOptions, result: Animated) -> Animated:
     """
     if options.edits is None:
         return result
+    if not options.edits.edits:
+        return replace(result, notes=(*result.notes, "--edits: holds no edit, so nothing changes"))
     result = replace(result, warnings=(*result.warnings, *painted_regions(options.edits).refused))
     wanted = options.frame_range
     last = wanted.last

@@ -70,13 +70,20 @@ def page(told: Mapping[str, Any], strip: Sequence[Thumbnail]) -> str:
 
 
 def _summary(told: Mapping[str, Any]) -> dict[str, object]:
-    summary = told["summary"]
+    summary, frames = told["summary"], told["frames"]
+    spent = {
+        "time": f"{summary['seconds']:.1f} s",
+        "most memory": _memory(told["peak_memory"]),
+    }
+    if len(frames) == 1:
+        (only,) = frames
+        figures = {"triangles": only["triangles"], "rmse": f"{only['rmse']:.3f} code values"}
+        return {"source": told["source"], "frame": only["frame"], **figures, **spent}
     return {
         "source": told["source"],
         "frames": summary["frames"],
         "mean rmse": f"{summary['mean_rmse']:.3f} code values",
-        "time": f"{summary['seconds']:.1f} s",
-        "most memory": _memory(told["peak_memory"]),
+        **spent,
         "cuts": ", ".join(map(str, summary["cuts"])) or "none",
     }
 
@@ -91,7 +98,8 @@ def _memory(peak: Mapping[str, int | None]) -> str:
 
 def _strip(strip: Iterable[Thumbnail]) -> list[str]:
     figures = [
-        f'<figure><img width="{one.size[0]}" height="{one.size[1]}" alt="frame {one.frame}" '
+        f'<figure style="max-width: {one.size[0]}px">'
+        f'<img width="{one.size[0]}" height="{one.size[1]}" alt="frame {one.frame}" '
         f'src="data:image/jpeg;base64,{b64encode(one.jpeg).decode()}"/>'
         f"<figcaption>frame {one.frame}</figcaption></figure>"
         for one in strip
@@ -100,7 +108,7 @@ def _strip(strip: Iterable[Thumbnail]) -> list[str]:
 
 
 def _plots(frames: Sequence[Mapping[str, Any]], cuts: Sequence[int]) -> list[str]:
-    if not frames:
+    if len(frames) < 2:  # whose figures stand in the summary
         return []
     numbers = [one["frame"] for one in frames]
     found = []

@@ -27,6 +27,9 @@ def check_report(run: Run, output: Output, source: Path) -> None:
     if run.report is None:
         return
     path = Path(run.report)
+    if path.name.lower() in ENDINGS:
+        named = path.with_name(f"report{path.name}")
+        raise OptionError(f"--report {path}: is an ending without a name; write {named}")
     if path.suffix.lower() not in ENDINGS:
         raise OptionError(f"--report {path}: ends with neither {' nor '.join(ENDINGS)}; add one")
     others = [one for one in (source, output.path, output.track) if one]

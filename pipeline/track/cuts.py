@@ -3,7 +3,7 @@
 import json
 from pathlib import Path
 
-from stages.media.text_file import read_text
+from stages.media.text_file import read_text, reason_of
 from warp_kernels.errors import MediaError
 
 
@@ -17,7 +17,9 @@ def read_cuts(path: Path) -> frozenset[int]:
     try:
         text = read_text(path)
     except (OSError, ValueError) as error:
-        raise MediaError(path, f"the list of cuts cannot be read ({error})", remedy) from error
+        raise MediaError(
+            path, f"the list of cuts cannot be read ({reason_of(error)})", remedy
+        ) from error
     try:
         numbers = json.loads(text) if text.lstrip().startswith("[") else text.split()
         cuts = frozenset(int(str(number)) for number in numbers)  # 2.5 and true are no frames

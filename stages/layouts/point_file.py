@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from stages.media.text_file import read_text
+from stages.media.text_file import read_text, reason_of
 from warp_kernels.errors import MediaError
 
 MOST_POINTS = 1_000_000
@@ -36,7 +36,9 @@ def read_points(name: str) -> np.ndarray:
         is_json = path.suffix.lower() == ".json" or text[:1] in ("[", "{")
         found = _of_json(json.loads(text)) if is_json else _of_lines(text)
     except OSError as error:
-        raise MediaError(name, f"cannot be read ({str(error.strerror).lower()})", FORM) from error
+        raise MediaError(name, f"cannot be read ({reason_of(error)})", FORM) from error
+    except UnicodeDecodeError as error:
+        raise MediaError(name, f"cannot be read ({reason_of(error)})", FORM) from error
     except (ValueError, RecursionError) as error:
         raise MediaError(name, " ".join(str(error).split())[:160], FORM) from error
     if not 1 <= len(found) <= MOST_POINTS:

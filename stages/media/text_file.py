@@ -28,6 +28,17 @@ def read_text(path: Path) -> str:
     return text_of(bounded_bytes(path))
 
 
+def reason_of(error: OSError | ValueError) -> str:
+    """Why `read_text` failed, in words for whoever wrote the name of the file.
+
+    Args:
+        error: What it raised.
+    """
+    if isinstance(error, UnicodeDecodeError):
+        return "it is no text"
+    return str(getattr(error, "strerror", None) or error).lower()
+
+
 def bounded_bytes(path: Path, most: int = MOST_BYTES) -> bytes:
     """What a file holds, read once: it may be a pipe or a device that never ends.
 
