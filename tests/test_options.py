@@ -1,6 +1,7 @@
 """Options: declared once in dataclasses, read for the command line, presets and specifications."""
 
 import dataclasses
+import re
 from fractions import Fraction
 from pathlib import Path
 
@@ -13,7 +14,7 @@ from pipeline.options.build import build_job
 from pipeline.options.command_line import job_options, with_preset
 from pipeline.options.look import Look
 from pipeline.options.members import parse_member
-from pipeline.options.presets import read_preset, shipped_presets
+from pipeline.options.presets import blamed, read_preset, shipped_presets, without_effect
 from stages.flows import FLOWS
 from stages.flows.dis import Dis
 from stages.layouts import LAYOUTS
@@ -180,6 +181,37 @@ def test_mistyped_preset_is_told_the_near_one() -> None:
     """Of those that come with the program."""
     with pytest.raises(OptionError, match=r"did you mean fine\? Else give a TOML file or one of"):
         read_preset("fin")
+
+
+@pytest.mark.parametrize(
+    ("key", "remedy"), [("trangles", "did you mean triangles?"), ("zzz", "trimotion help")]
+)
+def test_an_unknown_key_of_a_preset_is_told_the_near_one(
+    key: str, remedy: str, tmp_path: Path
+) -> None:
+    """In place of sixty names."""
+    with pytest.raises(OptionError, match=f"unknown option '{key}'; {re.escape(remedy)}"):
+        read_preset(write_preset(tmp_path, f"{key} = 3"))
+
+
+def test_errors_name_a_preset_only_where_it_gave_the_value() -> None:
+    """What the command line says itself is told as before."""
+    for given, prefix in (({}, "--preset fine: "), ({"triangles": 1}, "")):
+        with pytest.raises(OptionError) as failure, blamed({"preset": "fine", **given}):
+            raise OptionError("--triangles 1: a picture has two or more; try 1500")
+        assert str(failure.value).startswith(f"{prefix}--triangles 1: ")
+    with pytest.raises(OptionError) as failure, blamed({"preset": "fine"}):
+        raise OptionError("--crf 99: is too much; try --triangles")
+    assert str(failure.value).startswith("--crf")
+
+
+def test_what_a_preset_gives_a_command_in_vain_is_told() -> None:
+    """Nothing where all of it counts."""
+    assert without_effect("animate", "fine", read_preset("fine")) is None
+    told = without_effect("render", "preview", read_preset("preview"))
+    assert told is not None
+    assert told.endswith("flow, iterations, frame-iterations, triangles")
+    assert str(without_effect("solve", "preview", read_preset("preview"))).endswith(" out scale")
 
 
 def test_message_of_a_member_is_not_doubled() -> None:

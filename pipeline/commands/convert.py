@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from pipeline.commands.importing import importing
+from pipeline.options.presets import blamed, read_preset, without_effect
 
 if TYPE_CHECKING:
     from pipeline.loop.result import Animated
@@ -24,7 +25,9 @@ def convert(arguments: argparse.Namespace) -> "Animated":
         arguments: What the user gave, with the name of the source or track and of the output;
             options that were left out are absent.
     """
-    return {"animate": _animate, "solve": _solve, "render": _render}[arguments.command](arguments)
+    done = {"animate": _animate, "solve": _solve, "render": _render}[arguments.command]
+    with blamed(vars(arguments)):
+        return done(arguments)
 
 
 def check_options(arguments: argparse.Namespace) -> None:
@@ -36,12 +39,13 @@ def check_options(arguments: argparse.Namespace) -> None:
     Raises:
         OptionError: If an option has an impossible value.
     """
-    if arguments.command == "render":
-        _wanted(arguments)
-    elif arguments.command == "solve":
-        solve_job(arguments)
-    else:
-        _job(arguments)
+    with blamed(vars(arguments)):
+        if arguments.command == "render":
+            _wanted(arguments)
+        elif arguments.command == "solve":
+            solve_job(arguments)
+        else:
+            _job(arguments)
 
 
 def _animate(arguments: argparse.Namespace) -> "Animated":
@@ -71,6 +75,7 @@ def _solve(arguments: argparse.Namespace) -> "Animated":
             from pipeline.farm.runners import runner_for
             from pipeline.loop.animate import solve
 
+        _tell_left_out(arguments, progress)
         runner = runner_for(job.run)
         with as_called(arguments, job):
             result = solve(job.solve, job.output, job.run, progress, runner=runner)
@@ -89,6 +94,7 @@ def _render(arguments: argparse.Namespace) -> "Animated":
         from pipeline.track import TrackReader
 
     with TrackReader(Path(arguments.track)) as track, progress_for(arguments) as progress:
+        _tell_left_out(arguments, progress)
         made = render_job(track, *wanted, source)
         for note in made.notes:
             progress.note(note)
@@ -113,7 +119,13 @@ def preview_of(arguments: argparse.Namespace) -> str:
     new_folder = Path(place) if place.endswith(("/", os.sep)) else None
     if not place or place.endswith(("/", os.sep)) or os.path.isdir(place):
         place = os.path.join(place, f"{Path(arguments.source).stem}.preview.png")
-    job = _job(arguments, output=place)
+    with blamed(vars(arguments)):
+        job = _job(arguments, output=place)
+        return _previewed(arguments, job, new_folder)
+
+
+def _previewed(arguments: argparse.Namespace, job: "Job", new_folder: Path | None) -> str:
+    """Draw the moments of a job, and tell of them."""
     from pipeline.commands.output_folder import output_folder
     from pipeline.commands.pipes import shown_name
     from pipeline.commands.preview_sheet import as_json, make_preview, told
@@ -167,11 +179,18 @@ def given_by(arguments: argparse.Namespace) -> dict[str, object]:
         arguments: What the user gave; options that were left out are absent.
     """
     from pipeline.options.command_line import with_preset
-    from pipeline.options.presets import read_preset
 
     given = dict(vars(arguments))
     name = given.pop("preset")
     return with_preset(given, read_preset(name) if name else {})
+
+
+def _tell_left_out(arguments: argparse.Namespace, progress: "Progress") -> None:
+    """Note what a preset holds that means nothing here: a preset is for all commands."""
+    name = arguments.preset
+    note = without_effect(arguments.command, name, read_preset(name)) if name else None
+    if note:
+        progress.note(note)
 
 
 def progress_for(arguments: argparse.Namespace) -> "Progress":

@@ -9,6 +9,7 @@ from pipeline.farm.farm_job import FarmJob
 from pipeline.farm.formats import ENGINES
 from pipeline.loop.plan import LEAD, Pieces, Plan, plan
 from pipeline.options.command_line import COMMAND_OPTIONS, job_options
+from pipeline.options.presets import blamed
 from pipeline.options.words import as_words
 from pipeline.track.resume import check_track_name
 from warp_kernels.errors import OptionError
@@ -30,7 +31,8 @@ def planned(arguments: argparse.Namespace) -> str:
     form = "json" if arguments.json else arguments.format
     output = arguments.output or f"{Path(arguments.source).stem}.mtrk"
     check_track_name(Path(output))
-    job = solve_job(argparse.Namespace(**{**vars(arguments), "output": output}))
+    with blamed(vars(arguments)):
+        job = solve_job(argparse.Namespace(**{**vars(arguments), "output": output}))
     pieces = _pieces(arguments)
     found = plan(job.solve, arguments.parts, pieces)
     if form not in ENGINES:
