@@ -202,9 +202,11 @@ def run_styles(arguments: argparse.Namespace) -> None:
         print(list_styles(arguments.picture, as_json=arguments.json))
         return
     from pipeline.commands.styles.style_sheet import draw_sheet
+    from pipeline.progress import tell
 
     triangles, overwrite = arguments.triangles, arguments.overwrite
     draw_sheet(arguments.picture, arguments.sheet, triangles=triangles, overwrite=overwrite)
+    tell(f"sheet of all styles: {arguments.sheet}", sys.stderr)
 
 
 def run_timeline(arguments: argparse.Namespace) -> None:

@@ -263,6 +263,15 @@ def test_impossible_wishes_are_refused_early(clip: Path, name: str, options: Enc
         check_output(clip.parent / name, probe(clip), (64, 48), options)
 
 
+@pytest.mark.parametrize(("codec", "ending"), [("prores", ".mov"), ("h264", ".mp4")])
+def test_a_codec_is_told_what_usually_carries_it(clip: Path, codec: str, ending: str) -> None:
+    """The remedy works."""
+    given = probe(clip), (64, 48), EncodeOptions(codec=codec)
+    with pytest.raises(OptionError, match=rf"cannot hold it; use \{ending} or another codec"):
+        check_output(clip.with_name("a.webm"), *given)
+    check_output(clip.with_name(f"a{ending}"), *given)
+
+
 @pytest.mark.parametrize("error", [KeyboardInterrupt, ValueError])
 @pytest.mark.parametrize("name", ["out.mp4", "out.mkv", "out.gif", "out.png"])
 def test_interruption_leaves_nothing(clip: Path, name: str, error: type[BaseException]) -> None:

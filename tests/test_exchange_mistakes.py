@@ -111,7 +111,7 @@ def test_too_many_triangles_for_players_are_told_before_they_are_solved(tmp_path
     source = write_clip(tmp_path / "in.mp4")
     for jobs in (1, 2):
         done: list[object] = []
-        with pytest.raises(OptionError, match=r"40 triangles.* use triangles=18, or lottie_limit"):
+        with pytest.raises(OptionError, match=r"40 triangles.* use triangles=20, or lottie_limit"):
             trimotion.animate(
                 source,
                 tmp_path / "a.json",

@@ -195,6 +195,7 @@ def test_impossible_options_are_told_as_keywords(options: str, tmp_path: Path) -
         ({"no_audio": True}, ["did you mean audio?"]),
         ({"qqqqqq": 1}, ["qqqqqq", "there are frames,", "preset"]),
         ({"audio": "no"}, ["audio='no'", "True or False"]),
+        ({"audio": Path("a.ogg")}, ["audio='a.ogg'", "audio_mode='a.ogg'"]),
         ({"triangles": True}, ["triangles=True"]),
         ({"triangles": [1]}, ["triangles=[1]"]),
         ({"triangles": 2.5}, ["triangles", "2.5", "whole number"]),

@@ -91,7 +91,7 @@ def test_keyframes_are_few_and_near_enough() -> None:
 
 def test_too_many_triangles_are_told_with_the_remedy() -> None:
     film = film_of(".json", lottie_limit=100)
-    with pytest.raises(OptionError, match="use --triangles 90, or --lottie-limit 1"):
+    with pytest.raises(OptionError, match="use --triangles 100, or --lottie-limit 1"):
         format_with(film, mixed_figures())
 
 

@@ -58,7 +58,10 @@ def _read(option: Option, name: str, value: object) -> object:
     """The value of an option, as the command line gives it."""
     if option.is_switch:  # a keyword is the field itself, also where the flag says no
         if not isinstance(value, bool):
-            raise OptionError(f"{name}={value!r}: give True or False")
+            other = ""
+            if name == "audio" and isinstance(value, str):
+                other = f", or audio_mode={value!r} for a file, copy or aac"
+            raise OptionError(f"{name}={value!r}: give True or False{other}")
         return value
     return option.value(value, name, in_program)
 

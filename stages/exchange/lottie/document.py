@@ -106,7 +106,7 @@ def _refuse_many(film: Film, count: int) -> None:
     if count > most:
         raise OptionError(
             f"{film.ending}: {count} triangles, and players of Lottie become slow beyond {most}; "
-            f"use --triangles {most - most // 10}, or --lottie-limit {count}"
+            f"use --triangles {most}, or --lottie-limit {count}"
         )
 
 

@@ -56,6 +56,8 @@ class VideoCodec:
     """Codec that needs no card, where this one does."""
     tag: str | None = None
     """Four letters in mp4 and mov, where the muxer's own choice does not play everywhere."""
+    usual: str = ".mkv"
+    """Ending of what it is most often carried in; Matroska holds them all."""
 
 
 _AS_GIVEN = {"avoid_negative_ts": "disabled"}
@@ -99,12 +101,21 @@ def _on_card(name: str, twin: str, quality: int, tag: str | None = None) -> Vide
         quality_name="cq",
         twin=twin,
         tag=tag,
+        usual=".mp4",
     )
 
 
 ENCODERS = {
     "h264": VideoCodec(
-        "libx264", _YUV + _DEEP, 18, 0, 51, {"preset": "superfast"}, _PLAIN, _PRESETS
+        "libx264",
+        _YUV + _DEEP,
+        18,
+        0,
+        51,
+        {"preset": "superfast"},
+        _PLAIN,
+        _PRESETS,
+        usual=".mp4",
     ),
     "h265": VideoCodec(
         "libx265",
@@ -115,6 +126,7 @@ ENCODERS = {
         {"preset": "fast", "x265-params": "log-level=error"},
         presets=_PRESETS,
         tag="hvc1",
+        usual=".mp4",
     ),
     "av1": VideoCodec(
         "libsvtav1",
@@ -134,9 +146,17 @@ ENCODERS = {
         {"deadline": "realtime", "cpu-used": "5", "row-mt": "1", "tile-columns": "1"},
         alpha_format="yuva420p",
         odd_sizes=True,
+        usual=".webm",
     ),
     "prores": VideoCodec(
-        "prores_ks", ("yuv422p10le", "yuv444p10le"), None, 0, 0, {}, alpha_format="yuva444p10le"
+        "prores_ks",
+        ("yuv422p10le", "yuv444p10le"),
+        None,
+        0,
+        0,
+        {},
+        alpha_format="yuva444p10le",
+        usual=".mov",
     ),
     "ffv1": VideoCodec(
         "ffv1",

@@ -64,8 +64,8 @@ class EncodeOptions:
     audio_offset: float = field(
         default=0.0,
         metadata={
-            "help": "how much later than the film the sound of --audio FILE begins, in seconds; "
-            "less than 0 to begin within it",
+            "help": "when in the film the sound of --audio FILE begins: 2, 0.5s or 250ms; -2 "
+            "leaves out its first 2 seconds",
             "metavar": "SECONDS",
             "reads": "seconds",
         },

@@ -221,7 +221,7 @@ def _check_holds(container: Container, encoder: VideoCodec, ending: str) -> None
         trial.add_stream(encoder.name, rate=25)
     except ValueError as error:
         raise OptionError(
-            f"codec {encoder.name}: {ending} cannot hold it; use .mkv or another codec"
+            f"codec {encoder.name}: {ending} cannot hold it; use {encoder.usual} or another codec"
         ) from error
     finally:
         trial.close()
