@@ -99,3 +99,5 @@ def test_no_file_is_blamed_near_a_limit() -> None:
     lines = done.stderr.splitlines()
     told = ["out of memory" in line and "ulimit" in line for line in lines]
     assert told == [True, True, False, False, False], lines
+    assert not any("--scale" in line or "segment" in line for line in lines)  # info draws nothing
+    assert not any("convert the file" in line for line in lines[:2])

@@ -11,7 +11,13 @@ from typing import NoReturn
 
 from pipeline.printable import one_line
 from pipeline.progress import tell
-from warp_kernels.device.memory import MORE_MEMORY, is_limit_near, is_out_of_memory
+from warp_kernels.device.memory import (
+    MORE_FOR_ALL,
+    MORE_MEMORY,
+    is_limit_near,
+    is_out_of_memory,
+    memory_limit,
+)
 from warp_kernels.errors import MediaError, OptionError, OutputError, TrimotionError
 
 INTERRUPTED = 130
@@ -20,6 +26,10 @@ LONGEST = 240
 """Letters of what a library says that are told beside a lack of memory."""
 _OF_FILES = (FileNotFoundError, PermissionError, IsADirectoryError, NotADirectoryError)
 """What is a file's own fault, however little memory is left."""
+_LOADING = (ImportError, SystemError)
+"""How libraries fail that cannot even be loaded."""
+_DRAWING = ("animate", "render", "preview")
+"""Commands that have `--scale`."""
 
 
 class Terminated(BaseException):
@@ -38,9 +48,11 @@ def report_failure(error: BaseException, arguments: argparse.Namespace) -> int:
     """
     # Under a limit libraries fail in ways of their own, and options that would fit do not.
     if (isinstance(error, OptionError) or _is_of_library(error)) and is_limit_near():
-        return _fail(f"out of memory ({error}); {MORE_MEMORY}", 1)
+        problem = str(error).split("; ")[0]  # its remedy would not help
+        return _fail(f"out of memory ({problem}); {_more_memory(arguments)}", 1)
     if isinstance(error, TrimotionError):
-        return _fail(str(error), error.exit_code)
+        text = str(error).replace(MORE_MEMORY, _more_memory(arguments))
+        return _fail(text, error.exit_code)
     if isinstance(error, KeyboardInterrupt):
         return _fail(f"interrupted; {_left_over(arguments)}", INTERRUPTED)
     if isinstance(error, Terminated):
@@ -51,14 +63,32 @@ def report_failure(error: BaseException, arguments: argparse.Namespace) -> int:
         return 1
     kind = type(error).__name__
     if isinstance(error, Exception) and is_out_of_memory(error):
-        text = f"{kind}: {error}"
-        told = text if len(text) < LONGEST else kind  # NumPy writes a page where it cannot load
-        reason = "" if isinstance(error, MemoryError) else f" ({told})"
-        return _fail(f"out of memory{reason}; {MORE_MEMORY}", 1)
+        remedy = _more_memory(arguments, loading=_is_loading(error))
+        return _fail(f"out of memory{_reason(error)}; {remedy}", 1)
     if isinstance(error, OSError) and error.filename and error.strerror:
         reason = error.strerror.lower()
         return _fail(f"{error.filename}: {reason}; check the place, its rights and free space", 1)
     return _fail(f"internal error ({kind}: {error}); run again with --debug and report it", 1)
+
+
+def _is_loading(error: Exception) -> bool:
+    """Whether a library is not even there: Warp loads those of its own, and says so in words."""
+    return isinstance(error, _LOADING) or "shared library" in str(error)
+
+
+def _reason(error: Exception) -> str:
+    """What is told of a lack of memory: the limit, which says more than a library's words."""
+    limit = memory_limit()
+    if limit is not None:
+        return f" (limited to {limit / 1e6:.0f} MB)"
+    text, kind = f"{type(error).__name__}: {error}", type(error).__name__
+    told = text if len(text) < LONGEST else kind
+    return "" if isinstance(error, MemoryError) else f" ({told})"
+
+
+def _more_memory(arguments: argparse.Namespace, *, loading: bool = False) -> str:
+    """What to do about it: only what is drawn becomes smaller with a scale."""
+    return MORE_MEMORY if arguments.command in _DRAWING and not loading else MORE_FOR_ALL
 
 
 def _is_of_library(error: BaseException) -> bool:

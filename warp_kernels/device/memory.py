@@ -15,6 +15,8 @@ except ImportError:  # Windows
 
 MORE_MEMORY = "close other programs, raise the limit (ulimit -v), or try a smaller --scale"
 """What to do about it."""
+MORE_FOR_ALL = "close other programs, or raise the limit (ulimit -v)"
+"""What to do about it where nothing is drawn, or not even begun."""
 
 _NEAR = 0.85
 """Share of a limit beyond which it is taken for the reason of a failure: what was asked for last
