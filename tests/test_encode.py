@@ -263,6 +263,16 @@ def test_impossible_wishes_are_refused_early(clip: Path, name: str, options: Enc
         check_output(clip.parent / name, probe(clip), (64, 48), options)
 
 
+@pytest.mark.parametrize(
+    ("name", "remedy"),
+    [("noending", "has no ending"), ("a_#.png", "write a_####.png,"), ("%d.png", "frame_####.png")],
+)
+def test_names_that_hold_no_clip_are_told_one_that_does(clip: Path, name: str, remedy: str) -> None:
+    """A number field that is none does not stay in it."""
+    with pytest.raises(OptionError, match=remedy):
+        check_output(clip.with_name(name), probe(clip), (64, 48), EncodeOptions())
+
+
 @pytest.mark.parametrize(("codec", "ending"), [("prores", ".mov"), ("h264", ".mp4")])
 def test_a_codec_is_told_what_usually_carries_it(clip: Path, codec: str, ending: str) -> None:
     """The remedy works."""

@@ -52,14 +52,20 @@ def test_times_bound_a_range() -> None:
 
 @pytest.mark.parametrize(
     ("text", "seconds"),
-    [("12.5", Fraction(25, 2)), ("1:02.5", Fraction(125, 2)), ("1:00:01", Fraction(3601))],
+    [
+        ("12.5", Fraction(25, 2)),
+        ("12.5s", Fraction(25, 2)),
+        ("40 ms", Fraction(1, 25)),
+        ("1:02.5", Fraction(125, 2)),
+        ("1:00:01", Fraction(3601)),
+    ],
 )
 def test_times(text: str, seconds: Fraction) -> None:
     """Seconds and clocks are read exactly."""
     assert parse_time(text) == seconds
 
 
-@pytest.mark.parametrize("text", ["", "x", "-1", "1:2:3:4", "1:"])
+@pytest.mark.parametrize("text", ["", "x", "-1", "1:2:3:4", "1:", "s", "1:00s", "2m"])
 def test_bad_times_are_refused(text: str) -> None:
     """What is no time is an error."""
     with pytest.raises(OptionError):

@@ -6,6 +6,8 @@ administrator once replaced it for the whole machine.
 
 import os
 import stat
+import subprocess
+import sys
 from pathlib import Path
 
 import media_samples as samples
@@ -97,3 +99,21 @@ def test_a_device_stays(tmp_path: Path) -> None:
         with pytest.raises(OutputError, match="no regular file"):
             write_picture(path, samples.picture(8, 8))
         assert stat.S_ISCHR(path.stat().st_mode)
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="other systems have no full device")
+def test_a_pipe_to_where_there_is_no_room_is_told(tmp_path: Path) -> None:
+    """In one line with the code of outputs: it is no mistake of the program."""
+    write_picture(tmp_path / "in.png", samples.picture(16, 16))
+    words = ["animate", str(tmp_path / "in.png"), "-o", "-.png", *QUICK]
+    with Path("/dev/full").open("wb") as full:
+        done = subprocess.run(
+            [sys.executable, "-m", "trimotion", *words],
+            stdout=full,
+            stderr=subprocess.PIPE,
+            text=True,
+            cwd=Path(__file__).parents[1],
+        )
+    assert done.returncode == 4
+    assert done.stderr.startswith("trimotion: error: -: cannot be written (no space left")
+    assert done.stderr.count("\n") == 1

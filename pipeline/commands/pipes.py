@@ -14,6 +14,7 @@ from pathlib import Path
 from pipeline.commands.addresses import fetched, is_address, refuse_address
 from pipeline.commands.inputs import PIPE, inputs_of, is_pipe
 from pipeline.options.output_name import is_still
+from pipeline.progress import hush, tell
 from warp_kernels.errors import MediaError, OptionError, OutputError, TrimotionError
 
 FORMATS = {"solve": ".mtrk", "join": ".mtrk", "preview": ".png", "listen": ".json"}
@@ -69,9 +70,7 @@ def piped(arguments: argparse.Namespace) -> Iterator[None]:
         arguments.output = str(made)
         with _told_as({**names, made: output}):
             yield
-        with made.open("rb") as file:
-            shutil.copyfileobj(file, sys.stdout.buffer)
-        sys.stdout.buffer.flush()
+        _send(made)
 
 
 def _address_in(arguments: argparse.Namespace) -> str | None:
@@ -106,7 +105,6 @@ def _address_in(arguments: argparse.Namespace) -> str | None:
 def _tell_of(arguments: argparse.Namespace, address: str) -> None:
     """Say what is waited for: a film may take minutes, before any command says anything."""
     from pipeline.commands.convert import progress_for
-    from pipeline.progress import tell
 
     note = f"fetching {address}"
     if "progress" in arguments:
@@ -169,6 +167,24 @@ def _ending_for(arguments: argparse.Namespace) -> str:
     from pipeline.track.kind import is_of_a_still
 
     return ".png" if is_of_a_still(Path(arguments.track)) else ".mkv"
+
+
+def _send(path: Path) -> None:
+    """A file, to standard output.
+
+    Raises:
+        OutputError: If it leads to where there is no room.
+    """
+    try:
+        with path.open("rb") as file:
+            shutil.copyfileobj(file, sys.stdout.buffer)
+        sys.stdout.buffer.flush()
+    except BrokenPipeError:  # its reader has enough
+        raise
+    except OSError as error:
+        hush(sys.stdout)  # what is still buffered must not fail again at the end
+        reason = str(error.strerror or error).lower()
+        raise OutputError(PIPE, f"cannot be written ({reason})", "make room for it") from error
 
 
 def _received(path: Path) -> Path:

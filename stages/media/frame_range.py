@@ -7,6 +7,7 @@ from fractions import Fraction
 from warp_kernels.errors import OptionError
 
 _FORM = re.compile(r"(?P<first>\d+)(?P<dash>-(?P<last>\d+)?)?(?:x(?P<step>\d+))?")
+_SECONDS = re.compile(r"(\d+(?:\.\d*)?|\.\d+) *(ms|s)")
 _CLOCK = re.compile(r"(?:(?:(?P<hours>\d+):)?(?P<minutes>\d+):)?(?P<seconds>\d+(?:\.\d*)?|\.\d+)")
 
 
@@ -122,7 +123,7 @@ class FrameRange:
 
 
 def parse_time(text: str, name: str = "time") -> Fraction:
-    """Read a time as seconds (`12.5`) or as a clock (`1:02.5`, `0:01:02.5`).
+    """Read a time as seconds (`12.5`, `12.5s`, `12500ms`) or as a clock (`1:02.5`, `0:01:02.5`).
 
     Args:
         text: What the user wrote.
@@ -134,6 +135,9 @@ def parse_time(text: str, name: str = "time") -> Fraction:
     Raises:
         OptionError: If the text is neither.
     """
+    told = _SECONDS.fullmatch(text.strip())
+    if told is not None:  # as --audio-offset takes it
+        return Fraction(told[1]) / (1000 if told[2] == "ms" else 1)
     match = _CLOCK.fullmatch(text.strip())
     if match is None:
         raise OptionError(

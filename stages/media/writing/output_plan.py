@@ -2,6 +2,7 @@
 
 import io
 import os
+import re
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from pathlib import Path
@@ -98,9 +99,14 @@ def check_output(
     elif ending in STILL_ENDINGS or ending in SHAPES:
         plan = _plan_stills(target, pattern, source, size, options, frame_range)
     else:
+        known = " ".join([*CONTAINERS, *sorted(STILL_ENDINGS), *SHAPES])
+        if not ending:
+            raise OptionError(
+                f"output {path}: has no ending, which chooses the format; add one of {known}"
+            )
         raise OptionError(
-            f"output {path}: {'numbered ' if pattern else ''}files of ending {ending or '(none)'} "
-            f"cannot be written; use {' '.join([*CONTAINERS, *sorted(STILL_ENDINGS), *SHAPES])}"
+            f"output {path}: {'numbered ' if pattern else ''}files of ending {ending} cannot be "
+            f"written; use {known}"
         )
     _check_place(plan, source, options, frame_range)
     return plan
@@ -187,7 +193,7 @@ def _plan_stills(
     count = expected_frames(frame_range, source)
     holds_clip = SHAPES.get(target.suffix.lower(), False)
     if pattern is None and count != 1 and not frame_range.is_single and not holds_clip:
-        stem, ending = target.stem, target.suffix
+        stem, ending = _NO_FIELD.sub("", target.stem) or "frame", target.suffix
         raise OptionError(
             f"output {target}: one still cannot hold {count or 'many'} frames; "
             f"write {stem}_####{ending}, or choose one frame with --frames N"
@@ -213,6 +219,10 @@ def _plan_stills(
     if not options.audio:
         notes = []
     return OutputPlan(target, pattern, None, None, "", size[0], size[1], None, tuple(notes))
+
+
+_NO_FIELD = re.compile(r"[_-]?(#|%\d?d)$")
+"""What was meant for a number field at the end of a name, and is none."""
 
 
 def _check_holds(container: Container, encoder: VideoCodec, ending: str) -> None:
