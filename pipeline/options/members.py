@@ -2,6 +2,7 @@
 
 import inspect
 import os
+import re
 from argparse import ArgumentTypeError
 from collections.abc import Mapping
 from dataclasses import Field, fields
@@ -79,6 +80,9 @@ def _values(name: str, rest: str, kinds: Mapping[str, str]) -> dict[str, Any]:
 
 def _no_member(text: str, registry: Mapping[str, type]) -> str:
     """What to say about a specification whose name is none."""
+    several = [word for word in re.split(r"[,+;\s]+", text) if word]
+    if len(several) > 1 and all(word in registry for word in several):
+        return f"{len(several)} names in one; give each by itself: {' and '.join(several)}"
     name, _, rest = text.partition(":")
     owner, equals, value = name.partition("=")
     known = parameters(registry[owner]) if equals and owner in registry else []

@@ -63,7 +63,7 @@ def read_value(kind: str, text: str, parameter: str | None = None) -> Any:
     """
     if kind not in _RULES:
         if not text:
-            raise ArgumentTypeError("is empty; give a value or leave the option out")
+            raise ArgumentTypeError("is empty; give a value")
         return NAMES.get(kind, str)(text)
     read, noun, form = _RULES[kind]
     try:
