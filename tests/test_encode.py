@@ -273,6 +273,14 @@ def test_names_that_hold_no_clip_are_told_one_that_does(clip: Path, name: str, r
         check_output(clip.with_name(name), probe(clip), (64, 48), EncodeOptions())
 
 
+def test_a_quality_that_there_is_not_is_told_one_that_works(clip: Path) -> None:
+    """With the bounds."""
+    given = clip.with_name("a.mp4"), probe(clip), (64, 48)
+    with pytest.raises(OptionError, match="takes 0 to 51, the best first; try 18"):
+        check_output(*given, EncodeOptions(crf=200))
+    check_output(*given, EncodeOptions(crf=18))
+
+
 @pytest.mark.parametrize(("codec", "ending"), [("prores", ".mov"), ("h264", ".mp4")])
 def test_a_codec_is_told_what_usually_carries_it(clip: Path, codec: str, ending: str) -> None:
     """The remedy works."""

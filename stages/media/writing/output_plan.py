@@ -246,7 +246,7 @@ def _check_quality(encoder: VideoCodec, options: EncodeOptions) -> None:
         if not encoder.best_quality <= options.crf <= encoder.worst_quality:
             raise OptionError(
                 f"crf {options.crf}: {encoder.name} takes {encoder.best_quality} to "
-                f"{encoder.worst_quality}"
+                f"{encoder.worst_quality}, the best first; try {encoder.quality}"
             )
     if options.encoder_preset is not None and options.encoder_preset not in encoder.presets:
         raise OptionError(
