@@ -33,12 +33,13 @@ def load_mesh(
     Args:
         workspace: Takes the mesh.
         mesh: The mesh.
-        springs: Where the temporal term holds each vertex [px] and how strongly
-            [code value^2], [V, 3]; None for not at all.
+        springs: Where the temporal term holds each vertex [px], how strongly [code value^2],
+            and the shortest step by which it leaves that place [px], [V, 4]; None for not at
+            all.
         free: Vertices that move; the others rest, and cost nothing, [V] bool. None for all.
     """
     place_mesh(workspace, mesh)
-    anchors = np.zeros((mesh.vertex_count, 3)) if springs is None else springs
+    anchors = np.zeros((mesh.vertex_count, 4)) if springs is None else springs
     workspace.hold(anchors, None if free is None else _marks(mesh, free))
 
 

@@ -30,6 +30,9 @@ class Carried:
     values], shape [V, 2]; None if that is not known."""
     locks: Locks = NO_LOCKS
     """What of it a person holds fast."""
+    friction: np.ndarray | None = None
+    """How far each vertex must be drawn before it leaves its place [px], shape [V]; None for not
+    at all."""
 
     @classmethod
     def by_hand(cls, worked: Worked) -> "Carried":

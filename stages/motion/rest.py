@@ -23,7 +23,14 @@ class Rest:
     """Their persistent numbers, shape [N]."""
 
     @classmethod
-    def after(cls, before: Mesh, had: np.ndarray, mesh: Mesh, energies: np.ndarray) -> "Rest":
+    def after(
+        cls,
+        before: Mesh,
+        had: np.ndarray,
+        mesh: Mesh,
+        energies: np.ndarray,
+        least: float = LEAST_CHANGE,
+    ) -> "Rest":
         """Compare the triangles of a mesh with what they were a round before.
 
         Args:
@@ -31,6 +38,7 @@ class Rest:
             had: E(T) there [code value^2 px], [T].
             mesh: What has become of it.
             energies: E(T) of that, over the same picture.
+            least: A vertex has arrived once the energy around it changes by less than this part.
         """
         rows = _untouched(before, mesh)
         faint = FAINT * energies.mean()
@@ -38,7 +46,7 @@ class Rest:
         corners = mesh.triangles.reshape(-1)
         changes = np.bincount(corners, np.repeat(change, 3), mesh.vertex_count)
         around = np.bincount(corners, np.repeat(energies + faint, 3), mesh.vertex_count)
-        return cls(mesh.vertex_ids[np.abs(changes) < LEAST_CHANGE * around])
+        return cls(mesh.vertex_ids[np.abs(changes) < least * around])
 
     def but_for(self, before: Mesh, mesh: Mesh) -> "Rest":
         """Without the vertices of triangles that an edit has made.

@@ -16,7 +16,7 @@ by less than the dead band."""
 def springs_of(
     mesh: Mesh, seed: Carried, strength: float, weights: np.ndarray | None, hold: float = 0.0
 ) -> np.ndarray:
-    """Where the temporal term holds each vertex, and how strongly; new ones are free.
+    """Where the temporal term holds each vertex, how strongly and how fast; new ones are free.
 
     Args:
         mesh: What has become of the seed.
@@ -27,14 +27,16 @@ def springs_of(
         hold: Of the spring wherever the motion leads, for a layout that is kept [code value^2].
 
     Returns:
-        Places [px] and strengths [code value^2], [V, 3].
+        Places [px], strengths [code value^2] and what is told by `Carried.friction` [px], [V, 4].
     """
-    springs = np.zeros((mesh.vertex_count, 3))
+    springs = np.zeros((mesh.vertex_count, 4))
     springs[:, :2] = mesh.vertices
     old = np.searchsorted(seed.mesh.vertex_ids, mesh.vertex_ids)
     known = mesh.vertex_ids < seed.mesh.next_vertex_id
     springs[known, :2] = seed.mesh.vertices[old[known]]
     springs[known, 2] = strength * seed.trust[old[known]] + hold
+    if seed.friction is not None:
+        springs[known, 3] = seed.friction[old[known]]
     if weights is not None:
         springs[:, 2] *= _firmness(weights, springs[:, :2])
     if not seed.locks.is_empty:

@@ -50,11 +50,12 @@ class Hold:
             squared_error: Its mean squared error [code value^2].
 
         Returns:
-            Places [px] and strengths [code value^2], [V, 3]; None if nothing is held.
+            Places [px], strengths [code value^2] and no friction, [V, 4]; None if nothing is
+            held.
         """
         if self.share == 0.0:
             return None
-        springs = np.zeros((mesh.vertex_count, 3))
+        springs = np.zeros((mesh.vertex_count, 4))
         springs[:, :2] = mesh.vertices
         known = mesh.vertex_ids < layout.next_vertex_id
         springs[known, :2] = layout.vertices[

@@ -128,7 +128,7 @@ def descend(
     fan_offsets: wp.array(dtype=int),
     fan_corners: wp.array(dtype=int),
     freedom: wp.array(dtype=wp.vec2d),
-    anchors: wp.array(dtype=wp.vec3d),
+    anchors: wp.array(dtype=wp.vec4d),
     probe: wp.array(dtype=int),
     controls: wp.array(dtype=wp.float64),
     # In and out:
@@ -169,7 +169,10 @@ def descend(
         memory[axis + 2] = s
         step[axis] = s
     memory_out[vertex] = memory
-    there = here + limited(step, trust, around.height, controls[2])
+    dead_band = controls[2]
+    if here[0] == anchor[0] and here[1] == anchor[1]:
+        dead_band = wp.max(dead_band, anchor[3])  # at rest friction is larger than on the way
+    there = here + limited(step, trust, around.height, dead_band)
     vertices_out[vertex] = there
     away = to_fixed(there) - to_fixed(here)
     moved_out[vertex] = wp.where(away[0] == 0 and away[1] == 0, 0, wp.static(MOVED))
@@ -202,7 +205,8 @@ def record_descent(
         fan_corners: Corner numbers 3 t + c around each vertex, [3 T].
         freedom: 1 where a coordinate may change and 0 where the border holds it or the vertex
             rests, [V] vec2d.
-        anchors: Position [px] and weight [code value^2] of the temporal term, [V] vec3d.
+        anchors: Position [px] and weight [code value^2] of the temporal term, and the shortest
+            step that is taken away from there [px], [V] vec4d.
         probe: How far the variants' corners are displaced [1/256 px], [1].
         controls: Trust region [px], lambda [code value^2], shortest step that is taken [px], [3].
         memory_out: Each vertex's own trust region per axis [px] and its last step [px], read and
@@ -215,7 +219,8 @@ def record_descent(
         variants give second differences as well; each vertex keeps a trust region of its own per
         axis, which grows while its steps agree and shrinks when they turn round; a step is also
         limited by the heights around, so that no triangle turns inside out; a spring holds a
-        vertex to where the optical flow took it; and in Eq. 9 a border vertex weighs its inner
+        vertex to where the optical flow took it, and friction while the picture stays as it
+        is; and in Eq. 9 a border vertex weighs its inner
         neighbours twice and the two along the border once, for it meets them that often.
     """
     inputs = [

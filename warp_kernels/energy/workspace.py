@@ -148,7 +148,8 @@ class Workspace:
         """Fix the temporal term, and forget the steps that vertices took before.
 
         Args:
-            anchors: Position [px] and weight [code value^2] of every vertex, [V, 3].
+            anchors: Position [px], weight [code value^2] and shortest step away from it [px] of
+                every vertex, [V, 4].
             marks: Which vertices rest, see `Freedom.rest`; None for none.
         """
         self._held = True
@@ -271,7 +272,7 @@ class Workspace:
         self._fan_offsets = self._empty(vertices + 1, wp.int32)
         self._fan_corners = self._empty(3 * triangles, wp.int32)
         self._freedom = Freedom(self.device, vertices)
-        self._anchors = self._empty(vertices, wp.vec3d)
+        self._anchors = self._empty(vertices, wp.vec4d)
         self._memory = self._empty(vertices, wp.vec4d)
         if self.sums == "fragments":
             self._color_sums = self._empty((triangles, TRIANGLE_VARIANTS), types.color)
