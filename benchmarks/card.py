@@ -140,7 +140,7 @@ def solver_bits(trial: Trial) -> dict[str, Any]:
             for device in trial.both():
                 workspace = poisoned_workspace(device, waves(*size), mesh, model, weights=weights)
                 first = [*workspace.moments(), workspace.energies(), *workspace.fit()]
-                workspace.hold(np.zeros((mesh.vertex_count, 3)))
+                workspace.hold(np.zeros((mesh.vertex_count, 4)))
                 workspace.iterate(50, **STEP)
                 results.append([*first, workspace.vertices()])
             odd = [p for p, a, b in zip(PARTS, *results, strict=True) if not np.array_equal(a, b)]
@@ -160,7 +160,7 @@ def iterations(trial: Trial) -> dict[str, Any]:
         for name, model in COLOR_MODELS.items():
             for device in trial.both():
                 workspace = poisoned_workspace(device, waves(side, side), mesh, model)
-                workspace.hold(np.zeros((mesh.vertex_count, 3)))
+                workspace.hold(np.zeros((mesh.vertex_count, 4)))
                 times = [_timed(workspace, lambda w: w.iterate(100, **STEP)) for _ in range(4)]
                 key = f"{side}x{side}, {mesh.triangle_count} triangles, {name}, {device.name}"
                 found[key] = round(10 * min(times[1:]), 4)
@@ -202,7 +202,7 @@ def round_parts(trial: Trial) -> dict[str, Any]:
     size = (64, 48) if trial.small else (1280, 720)
     mesh = random_mesh(*size, 40 if trial.small else 750)
     workspace = poisoned_workspace(Device(trial.device), waves(*size), mesh, LINEAR)
-    workspace.hold(np.zeros((mesh.vertex_count, 3)))
+    workspace.hold(np.zeros((mesh.vertex_count, 4)))
     workspace.iterate(10, **STEP)
     picture = waves(*size)
     parts: dict[str, Callable[[Workspace], object]] = {
@@ -245,7 +245,7 @@ def two_threads(trial: Trial) -> dict[str, Any]:
         for number in range(40):
             grown = random_mesh(*size, 20 + 10 * number)
             workspace = poisoned_workspace(device, waves(*size), grown, LINEAR)
-            workspace.hold(np.zeros((grown.vertex_count, 3)))
+            workspace.hold(np.zeros((grown.vertex_count, 4)))
             workspace.iterate(5, **STEP)
             workspace.fit()
 

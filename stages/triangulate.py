@@ -186,7 +186,7 @@ class Triangulator:
         error = self._rmse(seed.mesh) ** 2
         unrest = Unrest.everywhere(seed.mesh) if renewed else self._unrest(seed, earlier)
         unrest = None if self._hold.share else unrest
-        seed = self._slowed(seed, earlier) if unrest is None else unrest.freed(seed)
+        seed = self._slowed(frame, seed, earlier) if unrest is None else unrest.freed(seed)
         rhythm = CALM if unrest is None else BOILING
         rounds, each = rhythm.spread(0 if self._hold.is_full else self._options.frame_iterations)
         following = Following(
@@ -264,15 +264,14 @@ class Triangulator:
             return Unrest.between(self._solved, seed, self._even.appraiser.energies(seed.mesh))
         return None
 
-    def _slowed(self, seed: Carried, earlier: Snapshot | None) -> Carried:
+    def _slowed(self, frame: Frame, seed: Carried, earlier: Snapshot | None) -> Carried:
         """A mesh as it came along, with friction where the picture stays as it was."""
         solved = self._solved
         if earlier is None or solved is None or solved.mesh is not earlier.mesh:
             return seed
         energies = self._even.appraiser.energies(seed.mesh)
-        return replace(
-            seed, friction=friction_of(solved.mesh, solved.energies, seed.mesh, energies)
-        )
+        friction = friction_of(solved.mesh, solved.energies, seed.mesh, energies, frame.index)
+        return replace(seed, friction=friction)
 
     def _followed_count(self, mesh: Mesh) -> int:
         """How many triangles a later frame shall have; a quality lets their number drift.

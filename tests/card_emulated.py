@@ -55,7 +55,7 @@ def on(device: str, model: str, sums: str, *, weighted: bool) -> Workspace:
 
 def solved(workspace: Workspace) -> list[np.ndarray]:
     """Everything that fifty iterations lead to."""
-    workspace.hold(np.zeros((len(workspace.vertices()), 3)))
+    workspace.hold(np.zeros((len(workspace.vertices()), 4)))
     workspace.iterate(50, trust=0.5, regularity=1e-3)
     return [workspace.vertices(), workspace.energies(), *workspace.moments(), *workspace.fit()]
 
@@ -191,7 +191,7 @@ def test_two_threads_on_a_card(device: str, shared: bool) -> None:
     for number in range(12):
         grown = random_mesh(*SIZE, 20 + 20 * number)
         workspace = poisoned_workspace(solving, noise(*SIZE), grown, COLOR_MODELS["constant"])
-        workspace.hold(np.zeros((grown.vertex_count, 3)))
+        workspace.hold(np.zeros((grown.vertex_count, 4)))
         workspace.iterate(3, trust=0.5, regularity=1e-3)
         workspace.fit()
     drawing.join()

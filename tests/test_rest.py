@@ -33,7 +33,8 @@ def left_half(mesh: Mesh) -> np.ndarray:
 
 def pinned(mesh: Mesh, free: np.ndarray) -> np.ndarray:
     """Springs that nothing can stretch, on all vertices that are not free."""
-    return np.column_stack([mesh.vertices, np.where(free, 0.0, 1e30)])
+    strengths = np.where(free, 0.0, 1e30)
+    return np.column_stack([mesh.vertices, strengths, np.zeros(mesh.vertex_count)])
 
 
 @pytest.mark.parametrize("sums", ["edges", "fragments"])

@@ -148,8 +148,7 @@ class Workspace:
         """Fix the temporal term, and forget the steps that vertices took before.
 
         Args:
-            anchors: Position [px], weight [code value^2] and shortest step away from it [px] of
-                every vertex, [V, 4].
+            anchors: Place [px], weight [code value^2], shortest step away [px], [V, 4].
             marks: Which vertices rest, see `Freedom.rest`; None for none.
         """
         self._held = True

@@ -149,9 +149,9 @@ class Live:
             appraiser.hold(worked.locks)
 
     def _springs(self, mesh: Mesh) -> np.ndarray:
-        """What holds vertices fast that a person holds, [V, 3]."""
+        """What holds vertices fast that a person holds, [V, 4]."""
         held = np.isin(mesh.vertex_ids, self.worked.locks.vertices)
-        return np.column_stack([mesh.vertices, np.where(held, LOCK, 0.0)])
+        return np.column_stack([mesh.vertices, np.where(held, LOCK, 0.0), np.zeros(len(held))])
 
     def _goal(self, mesh: Mesh, refine: RefineOptions) -> Goal:
         """A part of the way to the wanted number."""
