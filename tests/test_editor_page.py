@@ -60,6 +60,10 @@ def test_the_mouse_of_the_paper(page: Page, server: Served) -> None:
     wait_for_edits(page, 3)
     page.keyboard.press("Control+Shift+z")
     wait_for_edits(page, 4)
+    page.keyboard.press("Control+z")
+    wait_for_edits(page, 3)
+    page.keyboard.press("Control+y")
+    wait_for_edits(page, 4)
     assert log_of(server) == [kind for *_, kind in CLICKS[:4]]
     keep_page(page, "7_undone_twice_and_done_again")
     assert_shows_the_mesh(page, server)
@@ -74,6 +78,7 @@ def test_a_vertex_is_dragged_and_typed(page: Page, server: Served) -> None:
     keep_page(page, "move_before")
     page.mouse.move((left + right) / 2, (top + bottom) / 2)
     page.mouse.move(right, bottom)
+    assert "put the vertex here" in page.locator("#hint").inner_text()
     keep_page(page, "move_on_the_way")
     page.mouse.up()
     wait_for_edits(page, 1)

@@ -64,7 +64,8 @@ function tellHint(stage) {
   const picked = stage.picked();
   const tool = TOOLS.find((one) => one.name === stage.tool);
   let text = tool?.hint ?? "";
-  if (stage.tool === "edit" && picked) {
+  if (stage.moving) text = "Let go or Enter: put the vertex here · Shift: a tenth of the way · Esc: leave it";
+  else if (stage.tool === "edit" && picked) {
     const left = NAMES[planned(picked, "left", stage.shift)];
     const right = NAMES[planned(picked, "right", stage.shift)];
     text = [left && `Left: ${left}`, right && `Right: ${right}`].filter(Boolean).join(" · ");

@@ -61,9 +61,10 @@ export class Keyboard {
     if (this.help.open) return;
     const { target } = event;
     const isOnStage = target === this.stage.canvas || target === document.body;
-    if ((event.ctrlKey || event.metaKey) && event.key.toLowerCase() === "z") {
+    const turned = (event.ctrlKey || event.metaKey) && event.key.toLowerCase();
+    if (turned === "z" || turned === "y") {
       event.preventDefault();
-      this.stage.underway.turn(event.shiftKey ? "redo" : "undo");
+      this.stage.underway.turn(turned === "y" || event.shiftKey ? "redo" : "undo");
       return;
     }
     if (event.ctrlKey || event.metaKey || event.altKey) return;
