@@ -143,7 +143,7 @@ def test_three_workers_one_killed_one_slow(
     solve_film(film, killed, OnCluster(cluster["file"]), progress)
     assert cluster["workers"][0].wait() == -signal.SIGKILL
     assert rows_of(killed) == whole
-    # whoever dies takes along what it had not told yet, and its shot is gone on with, not begun anew
+    # who dies takes along what it had not told, and its shot is gone on with, not begun anew
     assert SHOTS * LENGTH - LENGTH < progress.told <= SHOTS * LENGTH + LENGTH
 
 
